@@ -24,6 +24,7 @@ EXAMPLES = """examples:
   deploy/hidden-physics --generation frozen-1 --probing 300 --palpation 300
   deploy/hidden-physics --program /tmp/old/tractus --label old  another program on the same sets, beside the first
   deploy/hidden-physics --probing 10 --only probing0004 --keep  one set; its files stay in FOLDER/GENERATION/sets
+  deploy/hidden-physics --named                                 sets that were once answered wrongly
   deploy/hidden-physics --recordings --emps ~/EMPS              real machines
   deploy/hidden-physics --report                                the table of the answers that are there
 
@@ -52,6 +53,7 @@ def parsed(arguments):
     parser.add_argument("--jobs", type=int, default=max(1, (os.cpu_count() or 2) // 2), metavar="N",
                         help="sets at a time (default: half of the cores)")
     parser.add_argument("--threads", type=int, default=2, metavar="N", help="threads of the program (default: 2)")
+    parser.add_argument("--named", action="store_true", help="the sets of named_sets.json: wrong answers of before")
     parser.add_argument("--recordings", action="store_true", help="also the real recordings of the repository")
     parser.add_argument("--emps", metavar="DIR", help="also EMPS, a real servo axis, from this folder of its files")
     parser.add_argument("--only", metavar="TEXT", help="only sets whose name contains this")
@@ -64,9 +66,9 @@ def parsed(arguments):
     unknown = [name for name in options.baselines if name not in SOLVERS]
     if unknown:
         parser.error(f"--baselines: {unknown[0]} is none of {', '.join(SOLVERS)}")
-    real = options.recordings or options.emps
+    real = options.recordings or options.emps or options.named
     if not options.report and not real and options.probing + options.palpation < 1:
-        parser.error("nothing to run: give --quick, --probing N, --palpation N, --recordings or --report")
+        parser.error("nothing to run: give --quick, --probing N, --palpation N, --named, --recordings or --report")
     if min(options.probing, options.palpation) < 0 or options.jobs < 1 or options.threads < 1:
         parser.error("numbers of sets, --jobs and --threads cannot be below 0 or 1")
     if not options.generation.replace("-", "").replace("_", "").replace(".", "").isalnum() or ".." in options.generation:
@@ -90,13 +92,13 @@ def show_progress(done, count, started, failed):
         print(line, file=sys.stderr, flush=True)
 
 
-def run_all(options, sets, work):
+def run_all(options, sets, place):
     """Runs the sets in parallel processes. Returns how many failed."""
     catalogue = jobs.catalogue_of(options.program)
-    jobs.write_json(work / options.generation / "catalogue.json", catalogue)
+    jobs.write_json(place / "catalogue.json", catalogue)
     started, done, failures = time.monotonic(), 0, []
     with concurrent.futures.ProcessPoolExecutor(options.jobs) as pool:
-        waiting = [pool.submit(jobs.run_set, planned, work, options.program, options.label, catalogue, options.threads,
+        waiting = [pool.submit(jobs.run_set, planned, place, options.program, options.label, catalogue, options.threads,
                                options.baselines, options.keep) for planned in sets]
         for future in concurrent.futures.as_completed(waiting):
             name, error = future.result()
@@ -108,9 +110,8 @@ def run_all(options, sets, work):
     return len(failures)
 
 
-def run_recordings(options, work):
+def run_recordings(options, work, place):
     """Has the program answer the real recordings that were asked for."""
-    place = work / options.generation
     asked = recordings.IN_REPOSITORY if options.recordings else []
     if options.emps:
         asked = [*asked, recordings.emps_recording(pathlib.Path(options.emps), work / "emps")]
@@ -118,27 +119,36 @@ def run_recordings(options, work):
         recordings.answered(recording, options.program, place, options.label, options.threads)
 
 
-def main(arguments=None):
-    options = parsed(arguments)
-    work = pathlib.Path(options.folder).absolute()
-    failed = 0
-    if not options.report:
+def wanted_sets(options):
+    """The sets that were asked for, in the order in which they run."""
+    if options.named:
+        sets = plan.named_sets()
+    else:
         rigs = [plan.planned_sets(options.generation, rig, getattr(options, rig)) for rig in plan.GENERATORS]
         sets = [s for _, s in sorted(((k / len(listed), s) for listed in rigs for k, s in enumerate(listed)),
                                      key=lambda pair: pair[0])]  # a run that is stopped has some of each rig
-        if options.only:
-            sets = [s for s in sets if options.only in s.name]
-            if not sets:
-                raise SystemExit(f"hidden-physics: --only {options.only}: none of the sets asked for has this in its name")
+    if options.only:
+        sets = [s for s in sets if options.only in s.name]
+        if not sets:
+            raise SystemExit(f"hidden-physics: --only {options.only}: none of the sets asked for has this in its name")
+    return sets
+
+
+def main(arguments=None):
+    options = parsed(arguments)
+    work = pathlib.Path(options.folder).absolute()
+    place = work / ("named" if options.named else options.generation)
+    failed = 0
+    if not options.report:
+        sets = wanted_sets(options)
         if plan.is_frozen(options.generation):
             print(f"{options.generation} is a frozen generation: its sets are for measuring, never for tuning.",
                   file=sys.stderr)
-        failed = run_all(options, sets, work) if sets else 0
-        run_recordings(options, work)
-    place = work / options.generation
+        failed = run_all(options, sets, place) if sets else 0
+        run_recordings(options, work, place)
     if not (place / "answers").is_dir() and not (place / "recordings").is_dir():
         raise SystemExit(f"hidden-physics: {place} holds no answers yet: run without --report first")
-    print(report.written(place, options.generation))
+    print(report.written(place, place.name))
     return 1 if failed else 0
 
 

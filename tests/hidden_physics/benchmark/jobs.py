@@ -78,14 +78,16 @@ def run_program(arguments: list, limit_s: float = LIMIT_S) -> dict:
 
 
 def asked_lab(program: str, folder: pathlib.Path, scratch: pathlib.Path, threads: int) -> dict:
-    """The lab's diagnosis of a set, and what its model leaves on the fresh trials."""
-    found = scratch / "found.model.json"
-    out = run_program([program, "diagnose", "--model", str(folder / "model.json"), "--measurements",
-                       str(folder / "measurements"), "--threads", str(threads), "--out-model", str(found), "--json"])
+    """The lab's diagnosis of a set, and what its model and the fitted base leave on the fresh trials."""
+    given = ["--model", str(folder / "model.json"), "--measurements", str(folder / "measurements"), "--threads",
+             str(threads), "--json"]
+    found, base = scratch / "found.model.json", scratch / "base.model.json"
+    out = run_program([program, "diagnose", *given, "--out-model", str(found)])
     if "answer" in out:
         for field in ("where", "trials", "notes"):
             out["answer"].pop(field, None)
-        for name, model in (("fresh", found), ("fresh_given", folder / "model.json")):
+        run_program([program, "fit", *given, "--out", str(base)])
+        for name, model in (("fresh", found), ("fresh_base", base)):
             if model.exists():
                 out[name] = compared(program, model, folder)
     return out
@@ -145,10 +147,12 @@ def catalogue_of(program: str) -> dict:
     return listed
 
 
-def run_set(planned: plan.PlannedSet, work: pathlib.Path, program: str, label: str, catalogue: dict, threads: int,
+def run_set(planned: plan.PlannedSet, place: pathlib.Path, program: str, label: str, catalogue: dict, threads: int,
             baselines: list, keep: bool) -> tuple:
-    """Makes the set if needed and asks every solver that has not answered yet. Returns (name, error or None)."""
-    place = work / planned.generation
+    """Makes the set if needed and asks every solver that has not answered yet. Returns (name, error or None).
+
+    place: the folder of truth, answers and sets.
+    """
     folder, scratch = place / "sets" / planned.name, place / "scratch" / planned.name
     answers = {solver: place / "answers" / solver / f"{planned.name}.json" for solver in [label, *baselines]}
     missing = [solver for solver, path in answers.items() if not path.exists()]

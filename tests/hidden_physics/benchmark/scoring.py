@@ -11,7 +11,8 @@ are *known* where the program's catalogue has them, else *foreign*. Named are th
     exact               nothing wrong, every known effect named, and "unexplained" only where something is foreign
     announced           the verdict says that something is missing that is in no catalogue
     right               exact, and where something is foreign, announced
-    useless             named although the held-out error did not fall when the effect was added
+    useless             named although the held-out error did not fall when the effect was added, or although the
+                        model found leaves no less of the fresh trials than the fitted base ("fresh trials")
 """
 from __future__ import annotations
 
@@ -198,6 +199,9 @@ def outcome(truth: dict, reply: dict, catalogue: dict) -> Outcome:
             o.covered += tuple(covered_by(effect, true, {p["name"]: p["unit"] for p in info["parameters"]}))
     if (reply.get("fresh") or {}).get("rmse") is not None:
         o.fresh_over_floor = reply["fresh"]["rmse"] / floor
+        base = (reply.get("fresh_base") or {}).get("rmse")
+        if o.named and base is not None and reply["fresh"]["rmse"] >= base:
+            o.useless += ("fresh trials",)
     right = (reply.get("right_model") or {}).get("fresh") or {}
     if right.get("rmse") is not None and not foreign:
         o.right_model_over_floor = right["rmse"] / floor

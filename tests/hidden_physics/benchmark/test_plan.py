@@ -1,5 +1,6 @@
 """Holds plan and sensor chain against what they promise."""
 import collections
+import json
 import math
 import pathlib
 import sys
@@ -49,6 +50,11 @@ class Plan(unittest.TestCase):
         low, high = math.log(plan.WEAKEST), math.log(plan.STRONGEST)
         self.assertTrue(low <= min(logs) and max(logs) <= high)
         self.assertAlmostEqual(np.mean(logs), (low + high) / 2, delta=4 * (high - low) / math.sqrt(12 * 2000))
+
+    def test_the_named_sets_are_there_with_their_reasons(self):
+        listed = json.loads((pathlib.Path(__file__).parent / "named_sets.json").read_text())
+        self.assertEqual([s.name for s in plan.named_sets()], [entry["name"] for entry in listed])
+        self.assertTrue(all(entry["why"] and not plan.is_frozen(entry["generation"]) for entry in listed))
 
     def test_a_frozen_list_stays_what_it_was(self):
         first = plan.planned_sets("frozen-1", "probing", 1)[0]  # written down when the plan was made

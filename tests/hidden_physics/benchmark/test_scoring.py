@@ -138,6 +138,13 @@ class Answers(unittest.TestCase):
         self.assertEqual(scored(truth_of(), reply_of("coulomb_friction", "inertia", steps=steps)).useless,
                          ("coulomb_friction",))
 
+    def test_a_model_that_leaves_no_less_of_fresh_trials_is_useless(self):
+        def useless(fresh, base, *named):
+            return scored(truth_of(), reply_of(*named, fresh={"rmse": fresh}, fresh_base={"rmse": base})).useless
+        self.assertEqual(useless(0.2, 0.2, "inertia"), ("fresh trials",))
+        self.assertEqual(useless(0.19, 0.2, "inertia"), ())
+        self.assertEqual(useless(0.2, 0.2), ())
+
     def test_errors_are_counted_in_true_floors(self):
         steps = [{"model": "base", "held_out_rmse": 0.5}, {"model": "+ inertia", "held_out_rmse": 0.12}]
         right = {"fresh": {"rmse": 0.103, "phases": [{"rmse": 0.15, "share_of_time": 0.5},
