@@ -35,9 +35,12 @@ def make_set(planned: plan.PlannedSet, folder: pathlib.Path) -> dict:
     made = plan.generator_module(planned.generator).make(planned.seed, list(planned.hidden), planned.shares)
     made = sensor_chain.pass_through(plan.random_of(planned.generation, planned.name, "chain"), made,
                                      planned.kind == "parameters", steady_clock=planned.generator == "oscillators")
+    chain = made.truth["chain"]
     if planned.rig == "probing":
-        made.truth["chain"]["motion_noise_as_force_N"] = motion_floor.motion_floor_N(made.truth, made.trials,
-                                                                                     scoring.true_floor(made.truth))
+        chain["motion_noise_as_force_N"] = motion_floor.motion_floor_N(made.truth, made.trials,
+                                                                       scoring.true_floor(made.truth))
+    else:
+        chain["crosstalk_as_force_N"] = motion_floor.crosstalk_floor_N(made.truth, made.trials)
     made.truth.update(set=planned.name, generation=planned.generation, kind=planned.kind)
     fresh = max(2, round(FRESH_SHARE * len(made.trials)))
     part = folder.with_name(folder.name + ".part")
@@ -48,6 +51,8 @@ def make_set(planned: plan.PlannedSet, folder: pathlib.Path) -> dict:
     (part / "measurements").rename(part / "fresh")
     made.trials = given
     made_set.write(made, part)
+    for name, content in made.extra_files.items():  # a model names its volume beside itself
+        (part / name).write_bytes(content)
     shutil.rmtree(folder, ignore_errors=True)
     part.rename(folder)
     return made.truth
@@ -126,8 +131,6 @@ def right_model(program, folder: pathlib.Path, scratch: pathlib.Path, truth: dic
         model["effects"].append({"id": name, "parameters": values})
     start, fitted = scratch / "right.model.json", scratch / "right-fitted.model.json"
     start.write_text(json.dumps(model))
-    if (volume := model.get("volume")) and not (scratch / volume).exists():
-        shutil.copy(folder / "measurements" / volume, scratch / volume)
     out = run_program([program, "fit", "--model", str(start), "--measurements", str(folder / "measurements"),
                        "--out", str(fitted), "--json"])
     if "answer" not in out:
@@ -167,6 +170,8 @@ def run_set(planned: plan.PlannedSet, place: pathlib.Path, program: str, label: 
             write_json(truth_file, truth)
         truth = json.loads(truth_file.read_text())
         scratch.mkdir(parents=True, exist_ok=True)
+        for path in folder.glob("volume.*"):
+            shutil.copy(path, scratch)
         if label in missing:
             answer = asked_lab(program, folder, scratch, threads)
             answer["right_model"] = right_model(program, folder, scratch, truth, catalogue[planned.rig])

@@ -1,9 +1,12 @@
-"""What the noise of a recorded position leaves of the force of a true model, at best.
+"""What the sensors leave of the force of a true model, at best, beside their own noise.
 
-A reader of the files knows the position up to noise, mostly its counts. The force that a model makes of it has the noise
+Probing: a reader of the files knows the position up to noise, mostly its counts. The force that a model makes of it has the noise
 N(f) = |Z(f)|^2 S_x(f), Z = K - m w^2 + i D w, and the force itself the spectrum S_F(f). The best linear estimate (N. Wiener,
 Extrapolation, Interpolation and Smoothing of Stationary Time Series, 1949) is off by S_F N / (S_F + N) at each frequency.
 Forces of bone change from moment to moment, so that this is an estimate for recordings that are stationary on average.
+
+Palpation: each axis of the wrench sensor has a gain of its own and a share of the other axes. A refit takes up what the
+three forces have in common (the model's force scale); the rest is left.
 """
 from __future__ import annotations
 
@@ -57,3 +60,13 @@ def motion_floor_N(truth: dict, trials: list, noise_sd_N: float) -> float:
         left += float(np.sum(error) * (frequency[1] - frequency[0])) * grid[-1]
         time += grid[-1]
     return math.sqrt(left / time)
+
+
+def crosstalk_floor_N(truth: dict, trials: list) -> float:
+    """Root mean square (vector length) that gains and cross-talk of the wrench sensor leave of the force."""
+    mixing = np.array(truth["sensor"]["gain_and_crosstalk_minus_1"])
+    unit = np.array([1, 1, 1] + 3 * [truth["base"]["length_m"]])
+    left = mixing[:3] - np.mean(np.diag(mixing)[:3]) * np.eye(6)[:3]
+    names = ("fx_N", "fy_N", "fz_N", "tx_Nm", "ty_Nm", "tz_Nm")
+    wrench = np.concatenate([np.stack([columns[n] for n in names], 1) for _, columns in trials])
+    return float(np.sqrt(np.mean(np.sum((wrench / unit @ left.T) ** 2, 1))))

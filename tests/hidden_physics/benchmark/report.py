@@ -34,6 +34,7 @@ NUMBERS = [
     ("held_out_over_floor", "held-out error / true floor, median and 90th percentile", "{:.2f}"),
     ("right_model_over_floor", "right model's error / true floor, median and 90th percentile", "{:.2f}"),
     ("stated_floor_over_floor", "stated floor / true floor, median", "{:.2f}"),
+    ("judged_share", "share of the fresh samples that compare judges, median and 10th percentile", "{:.2f}"),
     ("cpu_s", "processor time of an answer, median and 90th percentile, s", "{:.1f}"),
     ("wall_s", "wall time of an answer, median and 90th percentile, s", "{:.1f}"),
 ]

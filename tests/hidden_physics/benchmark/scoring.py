@@ -65,6 +65,7 @@ class Outcome:
     stated_floor_over_floor: float | None = None
     right_model_over_floor: float | None = None
     right_model_worst_phase: float | None = None
+    judged_share: float | None = None  # of the fresh trials' samples
     wall_s: float | None = None
     cpu_s: float | None = None
 
@@ -78,7 +79,8 @@ def true_floor(truth: dict, channel: str = "force") -> float:
         unit, axes = "Nm", 1
     else:
         native = truth.get("force_noise_without_filter_sd_N", truth["force_noise_sd_N"])
-        native = math.hypot(native, sensor.get("pose_noise_as_force_sd_N", 0.0), chain.get("motion_noise_as_force_N", 0.0))
+        native = math.hypot(native, sensor.get("pose_noise_as_force_sd_N", 0.0), chain.get("motion_noise_as_force_N", 0.0),
+                            chain.get("crosstalk_as_force_N", 0.0))
         unit, axes = "N", 3 if truth["rig"] == "palpation" else 1
     added = chain.get("noise_sd", {}).get(unit, 0.0) ** 2 + chain.get("step", {}).get(unit, 0.0) ** 2 / 12
     return math.sqrt((chain.get("gain", 1.0) * native) ** 2 + axes * added)
@@ -199,6 +201,8 @@ def outcome(truth: dict, reply: dict, catalogue: dict) -> Outcome:
             o.covered += tuple(covered_by(effect, true, {p["name"]: p["unit"] for p in info["parameters"]}))
     if (reply.get("fresh") or {}).get("rmse") is not None:
         o.fresh_over_floor = reply["fresh"]["rmse"] / floor
+        o.judged_share = next((j["share"] for j in reply["fresh"].get("judgements", []) if j["judgement"] == "judged"),
+                              None)
         base = (reply.get("fresh_base") or {}).get("rmse")
         if o.named and base is not None and reply["fresh"]["rmse"] >= base:
             o.useless += ("fresh trials",)
@@ -303,6 +307,7 @@ def figures(outcomes: list) -> dict:
                                 quantile([o.held_out_over_floor for o in sure], 0.9)],
         "right_model_over_floor": [median(right_models), quantile(right_models, 0.9)],
         "stated_floor_over_floor": median(o.stated_floor_over_floor for o in outcomes),
+        "judged_share": [median(o.judged_share for o in outcomes), quantile([o.judged_share for o in outcomes], 0.1)],
         "cpu_s": [median(o.cpu_s for o in outcomes), quantile([o.cpu_s for o in outcomes], 0.9)],
         "wall_s": [median(o.wall_s for o in outcomes), quantile([o.wall_s for o in outcomes], 0.9)],
     }

@@ -49,5 +49,16 @@ class Floor(unittest.TestCase):
         self.assertLess(floor, 0.45)  # what scatters about the noise's density alone
 
 
+class Crosstalk(unittest.TestCase):
+    def test_a_common_gain_is_taken_up_and_a_share_of_the_torque_is_left(self):
+        # gains 2 % on all forces; the x axis shows 1 % of the torque about y, 0.2 N m on a shank of 0.1 m: 0.02 N
+        mixing = 0.02 * np.eye(6)
+        mixing[0, 4] = 0.01
+        truth = {"sensor": {"gain_and_crosstalk_minus_1": mixing.tolist()}, "base": {"length_m": 0.1}}
+        columns = {n: np.zeros(10) for n in ("fx_N", "fy_N", "tx_Nm", "tz_Nm")}
+        columns.update(fz_N=np.full(10, 3.0), ty_Nm=np.full(10, 0.2))
+        self.assertAlmostEqual(motion_floor.crosstalk_floor_N(truth, [("a", columns)]), 0.02, places=12)
+
+
 if __name__ == "__main__":
     unittest.main()

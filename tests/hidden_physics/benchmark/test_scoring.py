@@ -1,5 +1,4 @@
 """Holds the definitions of the benchmark against values worked out by hand."""
-import copy
 import math
 import pathlib
 import sys
