@@ -5,10 +5,10 @@ effects, with a grid where an effect has a number that is not linear. All method
 trials, so that leaving a trial out costs a solution of a small system. None states a probability.
 
     best_single        the effect that lowers the leave-one-trial-out error most, always
-    stlsq              sequentially thresholded least squares (S. L. Brunton, J. L. Proctor, J. N. Kutz, PNAS 113 (2016),
-                       3932-3937), threshold by the leave-one-trial-out error
-    lasso_bic          LASSO (R. Tibshirani, J. R. Stat. Soc. B 58 (1996), 267-288) by coordinate descent, its path judged
-                       by BIC (G. Schwarz, Ann. Stat. 6 (1978), 461-464) after a refit
+    stlsq              sequentially thresholded least squares (S. L. Brunton, J. L. Proctor, J. N. Kutz, PNAS 113
+                       (2016), 3932-3937), threshold by the leave-one-trial-out error
+    lasso_bic          LASSO (R. Tibshirani, J. R. Stat. Soc. B 58 (1996), 267-288) by coordinate descent, its path
+                       judged by BIC (G. Schwarz, Ann. Stat. 6 (1978), 461-464) after a refit
     gaussian_process   a Gaussian process of depth and speed alone, by random Fourier features (A. Rahimi, B. Recht,
                        NIPS 2007): "unexplained" where it lowers the leave-one-trial-out error by 2 %
 """

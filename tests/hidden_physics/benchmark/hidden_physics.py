@@ -6,6 +6,7 @@ import argparse
 import concurrent.futures
 import os
 import pathlib
+import re
 import sys
 import time
 
@@ -71,7 +72,7 @@ def parsed(arguments):
         parser.error("nothing to run: give --quick, --probing N, --palpation N, --named, --recordings or --report")
     if min(options.probing, options.palpation) < 0 or options.jobs < 1 or options.threads < 1:
         parser.error("numbers of sets, --jobs and --threads cannot be below 0 or 1")
-    if not options.generation.replace("-", "").replace("_", "").replace(".", "").isalnum() or ".." in options.generation:
+    if not re.fullmatch(r"[A-Za-z0-9][A-Za-z0-9._-]*", options.generation):
         parser.error("--generation: use letters, digits, '-', '_' and '.'")
     if options.label in SOLVERS:
         parser.error(f"--label: {options.label} is the name of a baseline")

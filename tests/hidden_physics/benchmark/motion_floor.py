@@ -1,9 +1,10 @@
 """What the sensors leave of the force of a true model, at best, beside their own noise.
 
-Probing: a reader of the files knows the position up to noise, mostly its counts. The force that a model makes of it has the noise
-N(f) = |Z(f)|^2 S_x(f), Z = K - m w^2 + i D w, and the force itself the spectrum S_F(f). The best linear estimate (N. Wiener,
-Extrapolation, Interpolation and Smoothing of Stationary Time Series, 1949) is off by S_F N / (S_F + N) at each frequency.
-Forces of bone change from moment to moment, so that this is an estimate for recordings that are stationary on average.
+Probing: a reader of the files knows the position up to noise, mostly its counts. The force that a model makes of it has
+the noise N(f) = |Z(f)|^2 S_x(f), Z = K - m w^2 + i D w, and the force itself the spectrum S_F(f). The best linear
+estimate (N. Wiener, Extrapolation, Interpolation and Smoothing of Stationary Time Series, 1949) is off by
+S_F N / (S_F + N) at each frequency. Forces of bone change from moment to moment, so that this is an estimate for
+recordings that are stationary on average.
 
 Palpation: each axis of the wrench sensor has a gain of its own and a share of the other axes. A refit takes up what the
 three forces have in common (the model's force scale); the rest is left.
@@ -42,7 +43,8 @@ def spectrum(values, rate_Hz):
     frequency = np.fft.rfftfreq(count, 1 / rate_Hz)
     sums = np.concatenate([[0.0], np.cumsum(density)])
     half = np.maximum(2, (np.arange(len(density)) * 0.02).astype(int))
-    low, high = np.maximum(np.arange(len(density)) - half, 0), np.minimum(np.arange(len(density)) + half + 1, len(density))
+    at = np.arange(len(density))
+    low, high = np.maximum(at - half, 0), np.minimum(at + half + 1, len(density))
     return frequency, (sums[high] - sums[low]) / (high - low)
 
 

@@ -18,9 +18,9 @@ import numpy as np
 import jobs
 
 DATA = pathlib.Path(__file__).resolve().parents[2] / "data/force"
-EMPS_SOURCE = ("EMPS is no part of the repository (A. Janot, M. Gautier, M. Brunot: Data Set and Reference Models of EMPS, "
-               "2019; https://www.nonlinearbenchmark.org): download it and give the folder that holds DATA_EMPS.mat with "
-               "--emps DIR")
+EMPS_SOURCE = ("EMPS is no part of the repository (A. Janot, M. Gautier, M. Brunot: Data Set and Reference Models of "
+               "EMPS, 2019; https://www.nonlinearbenchmark.org): download it and give the folder that holds "
+               "DATA_EMPS.mat with --emps DIR")
 EMPS_N_PER_V, EMPS_MASS_KG, EMPS_VISCOUS = 35.15, 95.1, 203.5  # as published
 EMPS_MIDDLE_M, EMPS_TRIAL_S = 0.05, 2.5
 
@@ -101,8 +101,8 @@ def emps_recording(folder: pathlib.Path, target: pathlib.Path) -> Recording:
         lines = "\n".join(f"{a:.6f},{b:.8f},{c:.5f}" for a, b, c in rows)
         (target / "emps" / f"part{k + 1:02d}.csv").write_text(f"t_s,x_m,fz_N\n{lines}\n")
         trials.append({"id": f"part{k + 1:02d}", "file": f"part{k + 1:02d}.csv"})
-    (target / "emps/set.json").write_text(json.dumps({"format": "tractus-measurements/1", "rig": "probing", "name": "EMPS",
-                                                      "simulated": False, "trials": trials}))
+    index = {"format": "tractus-measurements/1", "rig": "probing", "name": "EMPS", "simulated": False, "trials": trials}
+    (target / "emps/set.json").write_text(json.dumps(index))
     layer = {"start_m": -1.0, "thickness_m": 2.0, "stiffness_N_per_m": 0.0, "damping_Ns_per_m": EMPS_VISCOUS,
              "equilibrium_m": 0.0}
     model = {"format": "tractus-model/1", "rig": "probing", "name": "servo axis", "base": {"layers": [layer]},

@@ -193,7 +193,8 @@ def page(title: str, parts: list, curves: dict) -> str:
     body = [f"<!doctype html><html lang=en><meta charset=utf-8><title>{html.escape(title)}</title><style>"
             "body{font:14px system-ui;margin:2em;max-width:80em}table{border-collapse:collapse}"
             "td,th{padding:2px 10px;text-align:left;border-bottom:1px solid #ddd}</style>",
-            f"<h1>{html.escape(title)}</h1><p>Simulated measurements, real recordings apart. Rates with 95 % intervals (Wilson).</p>"]
+            f"<h1>{html.escape(title)}</h1><p>Simulated measurements, real recordings apart. "
+            "Rates with 95 % intervals (Wilson).</p>"]
     for solver, bins in curves.items():
         body.append(f"<figure>{reliability_curve(bins)}<figcaption>{html.escape(solver)}: a point is a tenth of the "
                     "scale, its area the number of sets</figcaption></figure>")

@@ -3,8 +3,8 @@
 A set hides effects (its truth) and is recorded by a sensor chain that may itself delay and drift. Effects of the truth
 are *known* where the program's catalogue has them, else *foreign*. Named are the effects of the answer.
 
-    gain of an effect   1 - floor / sqrt(floor^2 + left^2): by how much a model with the effect lowers the held-out error
-                        of a model without it; left is the rms that a refit of the base leaves of the effect
+    gain of an effect   1 - floor / sqrt(floor^2 + left^2): by how much a model with the effect lowers the held-out
+                        error of a model without it; left is the rms that a refit of the base leaves of the effect
     detectable          every hidden effect has a gain of 2 % at least; other sets are scored apart
     granted             effects that the sensor chain truly does, beside the truth: naming them is not wrong
     wrong               named, neither hidden nor granted
@@ -79,8 +79,8 @@ def true_floor(truth: dict, channel: str = "force") -> float:
         unit, axes = "Nm", 1
     else:
         native = truth.get("force_noise_without_filter_sd_N", truth["force_noise_sd_N"])
-        native = math.hypot(native, sensor.get("pose_noise_as_force_sd_N", 0.0), chain.get("motion_noise_as_force_N", 0.0),
-                            chain.get("crosstalk_as_force_N", 0.0))
+        native = math.hypot(native, sensor.get("pose_noise_as_force_sd_N", 0.0),
+                            chain.get("motion_noise_as_force_N", 0.0), chain.get("crosstalk_as_force_N", 0.0))
         unit, axes = "N", 3 if truth["rig"] == "palpation" else 1
     added = chain.get("noise_sd", {}).get(unit, 0.0) ** 2 + chain.get("step", {}).get(unit, 0.0) ** 2 / 12
     return math.sqrt((chain.get("gain", 1.0) * native) ** 2 + axes * added)

@@ -104,8 +104,8 @@ def passed(random, chain, columns):
             shown[name] = shown_early(t, values, chain["delay_s"], period, fast)[0][inside]
         else:
             unit = "N" if name in UNIT_FORCE else "Nm"
-            noise = chain["noise_sd"][unit] * coloured(random, len(t), math.exp(-period / chain["noise_time_constant_s"]))
-            load = chain["gain"] * values + noise
+            keep = math.exp(-period / chain["noise_time_constant_s"])
+            load = chain["gain"] * values + chain["noise_sd"][unit] * coloured(random, len(t), keep)
             if chain["clips_at"]:
                 load = np.clip(load, -chain["clips_at"][name], chain["clips_at"][name])
             step = chain["step"][unit]
