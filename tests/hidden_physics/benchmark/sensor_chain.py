@@ -89,10 +89,9 @@ def rounded_like(values, like):
     return np.round(values, decimals(np.asarray(like, float)))
 
 
-def passed(random, chain, columns):
-    """One trial as the chain shows it."""
+def passed(random, chain, columns, period):
+    """One trial as the chain shows it. period: of the samples, in s, more exact than rounded time stamps tell."""
     t = np.asarray(columns["t_s"], float)
-    period = float(np.median(np.diff(t)))
     fast = "x_m" in columns
     inside = shown_early(t, t, chain["delay_s"], period, fast)[1]
     shown = {}
@@ -162,8 +161,9 @@ def written_down(random, model, far_off):
 def pass_through(random, made, far_off, steady_clock=False):
     """Sends a made set through the chain; its truth then says what the chain did, under "chain"."""
     joined = {name: np.concatenate([np.asarray(c[name], float) for _, c in made.trials]) for name in made.trials[0][1]}
-    chain = draw_chain(random, joined, float(np.median(np.diff(made.trials[0][1]["t_s"]))), steady_clock)
-    made.trials = [(name, passed(random, chain, columns)) for name, columns in made.trials]
+    period_s = 1 / made.truth["sensor"]["rate_Hz"]
+    chain = draw_chain(random, joined, period_s, steady_clock)
+    made.trials = [(name, passed(random, chain, columns, period_s)) for name, columns in made.trials]
     made.model = written_down(random, made.model, far_off)
     if "noise" in made.stated:  # what the user states of the noise no longer holds exactly; it never does
         made.stated["noise"] = {n: float(f"{math.hypot(sd, chain['noise_sd']['N' if n in UNIT_FORCE else 'Nm']):.2g}")

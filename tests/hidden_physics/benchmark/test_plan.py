@@ -73,8 +73,8 @@ def trial(count=2000, rate_Hz=500.0):
     return {"t_s": t, "x_m": np.round(0.01 * np.sin(5 * t), 7), "fz_N": 8 * np.cos(5 * t)}
 
 
-def passed(columns, **changes):
-    return chain.passed(np.random.default_rng(1), {**QUIET, **changes}, columns)
+def passed(columns, rate_Hz=500.0, **changes):
+    return chain.passed(np.random.default_rng(1), {**QUIET, **changes}, columns, 1 / rate_Hz)
 
 
 class Chain(unittest.TestCase):
@@ -97,6 +97,13 @@ class Chain(unittest.TestCase):
         shown = passed(columns, delay_s=4e-3)
         np.testing.assert_allclose(shown["x_m"], 0.01 * np.sin(5 * (shown["t_s"] + 4e-3)), atol=2e-7)
         self.assertEqual(len(shown["t_s"]), 2000 - 2 - 2 - 2)  # the gap, its shadow, the end
+
+    def test_stamps_that_were_rounded_do_not_drift_against_the_samples(self):
+        columns = trial(5000, 610.3515625)  # 1.6384 ms, written as 1.638 and 1.639 ms
+        columns["t_s"] = np.round(columns["t_s"], 6)
+        shown = passed(columns, 610.3515625, delay_s=1 / 610.3515625)
+        self.assertEqual(len(shown["t_s"]), 4999)
+        np.testing.assert_array_equal(shown["x_m"], columns["x_m"][1:])
 
     def test_gain_clipping_and_counts(self):
         shown = passed(trial(), gain=1.01, clips_at={"fz_N": 8.0}, step={"N": 0.05, "Nm": 0.0})
@@ -131,7 +138,8 @@ class Chain(unittest.TestCase):
         self.assertTrue(0.495 < min(ratios) < 0.55 and 1.8 < max(ratios) < 2.02)
 
     def test_a_set_tells_what_the_chain_did(self):
-        made = MadeSet({"fixed": [], "effects": [], "base": {}}, {"noise": {"fz_N": 0.1}}, [("a", trial())], {}, {})
+        made = MadeSet({"fixed": [], "effects": [], "base": {}}, {"noise": {"fz_N": 0.1}}, [("a", trial())], {},
+                       {"sensor": {"rate_Hz": 500.0}})
         chain.pass_through(np.random.default_rng(3), made, False)
         told = made.truth["chain"]
         self.assertTrue(0 <= told["delay_s"] <= 2e-3 and 0.99 <= told["gain"] <= 1.01)
