@@ -38,7 +38,7 @@ OUTSIDE = ["load_friction",  # dry friction in proportion to the bone's resistan
 
 NEEDS_TURNING = {"rotary_bias", "rotary_coulomb_friction", "rotary_stiffness", "rotation_coupling", "torque_crosstalk"}
 MAX_DRAWS = 20
-SMALLEST_SHARE, LARGEST_SHARE, LEAST_LEFT = 0.04, 0.10, 0.5
+SHARES, LEAST_LEFT = (0.04, 0.10), 0.5
 PILOT_TRIALS = 3
 COARSE_RATE_HZ, FINE_RATE_HZ = 500.0, 4000.0
 BEFORE_ENTRY_S = 0.4
@@ -308,14 +308,14 @@ def solve(d, effects, count):
     return trials
 
 
-def scaled_effects(rng, d, names, last):
+def scaled_effects(rng, d, names, shares, last):
     """The effects, sized by trying them on a few trials, then on all; trials, measures, totals; whether accepted."""
     if not names:
         trials = solve(d, [], d.trials)
         return [], trials, *measure(trials, [], d), True
     usual, effects, aims = usual_motion(solve(d, [], PILOT_TRIALS), d), [], []
     for name in names:
-        usual.share = log_uniform(rng, 1.1 * SMALLEST_SHARE, LARGEST_SHARE / 1.1)
+        usual.share = log_uniform(rng, 1.1 * shares[0], shares[1] / 1.1)
         usual.aim = usual.share * (usual.torque if name.startswith("rotary_") else usual.force)
         effects.append(LAWS[name].make(rng, usual))
         effects[-1].name = name
@@ -325,7 +325,7 @@ def scaled_effects(rng, d, names, last):
         count = counts.pop(0)
         trials = solve(d, effects, count)
         answers, total = measure(trials, effects, d)
-        good = all(SMALLEST_SHARE <= a.share <= LARGEST_SHARE for a in answers)
+        good = all(shares[0] <= a.share <= shares[1] for a in answers)
         if not counts or count == d.trials and good:
             break
         if not last and count < d.trials and min(a.left for a in answers) < 0.8 * LEAST_LEFT:
@@ -338,7 +338,7 @@ def scaled_effects(rng, d, names, last):
     return effects, trials, answers, total, good and min(a.left for a in answers) >= LEAST_LEFT
 
 
-def truth_of(seed, d, effects, answers, trials, recorded, draws, accepted):
+def truth_of(seed, d, effects, answers, total, trials, recorded, draws, accepted):
     outside = any(e.name in OUTSIDE for e in effects)
     every = {channel: np.concatenate([noise[channel] for _, noise, _ in recorded]) for channel in recorded[0][1]}
     pinned = np.concatenate([t.coarse.pinned for t in trials])
@@ -349,8 +349,8 @@ def truth_of(seed, d, effects, answers, trials, recorded, draws, accepted):
                     "formula": LAWS[e.name].formula, "source": LAWS[e.name].source, "channel": e.channel,
                     "share_of_force_rms": a.share, "left_after_base_refit": a.left,
                     "left_after_base_and_partner_refit": a.left_with_partner} for e, a in zip(effects, answers)],
-        "accepted": accepted, "draws": draws, "force_noise_sd_N": rms(every["fz_N"]),
-        **({"torque_noise_sd_Nm": rms(every["tz_Nm"])} if d.rotary else {}),
+        "accepted": accepted, "draws": draws, "force_noise_sd_N": rms(every["fz_N"]), "force_rms_N": total["fz_N"],
+        **({"torque_noise_sd_Nm": rms(every["tz_Nm"]), "torque_rms_Nm": total["tz_Nm"]} if d.rotary else {}),
         "base": {"layers": d.layers, **({"rotary": vars(d.rotary)} if d.rotary else {}),
                  "mass_above_sensor_kg": d.plant.mass_above_kg, "mass_below_sensor_kg": d.plant.mass_below_kg},
         "stated_off_by_up_to_a_tenth": ["stiffness_N_per_m", "damping_Ns_per_m", *([] if d.equilibrium_known else [
@@ -361,15 +361,18 @@ def truth_of(seed, d, effects, answers, trials, recorded, draws, accepted):
         "share_of_time_held_at_a_border": float(np.mean(pinned))}
 
 
-def make(seed: int, hidden: list) -> MadeSet:
-    """A measurement set with these effects hidden: none, one or two ids of CATALOGUE and OUTSIDE."""
+def make(seed: int, hidden: list, shares=SHARES) -> MadeSet:
+    """A measurement set with these effects hidden: none, one or two ids of CATALOGUE and OUTSIDE.
+
+    Each makes between the two shares (1.3 apart at least) of its channel's rms.
+    """
     names = sorted(hidden)
     if len(set(names)) != len(names) or len(names) > 2 or not set(names) <= set(CATALOGUE + OUTSIDE):
         raise ValueError(f"hidden is {hidden}: give none, one or two different ids of CATALOGUE and OUTSIDE")
     for draw in range(1, MAX_DRAWS + 1):
         rng = np.random.default_rng([seed, zlib.crc32("+".join(names).encode()), draw])
         d = draw_set(rng, bool(NEEDS_TURNING & set(names)) or rng.random() < 0.6)
-        effects, trials, answers, total, accepted = scaled_effects(rng, d, names, draw == MAX_DRAWS)
+        effects, trials, answers, total, accepted = scaled_effects(rng, d, names, shares, draw == MAX_DRAWS)
         if accepted:
             break
     model = stated_model(rng, d)
@@ -381,4 +384,4 @@ def make(seed: int, hidden: list) -> MadeSet:
         stated["noise"] = {channel: float(f"{sd * hum * rng.uniform(0.9, 1.1):.2g}") for channel, sd in sds.items()}
     return MadeSet(model=model, stated=stated, extra_files={},
                    trials=[(f"trial{k + 1}", columns) for k, (columns, _, _) in enumerate(recorded)],
-                   truth=truth_of(seed, d, effects, answers, trials, recorded, draw, accepted))
+                   truth=truth_of(seed, d, effects, answers, total, trials, recorded, draw, accepted))

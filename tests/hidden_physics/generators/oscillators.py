@@ -212,9 +212,9 @@ def rig_of(random, hidden):
     return homes[0] if homes else str(random.choice(["bouc_wen", "silverbox", "dahl", "servo_axis"]))
 
 
-def sized(random, oscillator, drive, name, scale):
-    """Returns parameters with which an element that is foreign to the rig makes 4 to 10 % of the force's rms."""
-    parameters, target = ELEMENTS[name].elsewhere(*scale), log_uniform(random, 0.04, 0.10)
+def sized(random, oscillator, drive, name, scale, shares):
+    """Returns parameters with which an element that is foreign to the rig makes a drawn share of the force's rms."""
+    parameters, target = ELEMENTS[name].elsewhere(*scale), log_uniform(random, *shares)
     for _ in range(3):
         share, _ = examined(oscillator, [(name, parameters)], *advanced(oscillator, [(name, parameters)], drive))
         factor = min(max(target / max(share, 1e-9), 0.05), 20.0)
@@ -227,7 +227,7 @@ def sufficient(name, key, share, left):
     return share * left >= 0.03 if ELEMENTS[name].home == key else left >= 0.5
 
 
-def drawn(random, hidden):
+def drawn(random, hidden, shares):
     """Draws rig, level and elements, and tries them on short trials."""
     key = rig_of(random, hidden)
     oscillator = OSCILLATORS[key]
@@ -240,7 +240,7 @@ def drawn(random, hidden):
         scale = rms(force.ravel()), rms((x - x.mean()).ravel()), speed
     for name in hidden:
         home = ELEMENTS[name].home == key
-        parameters = dict(ELEMENTS[name].published) if home else sized(random, oscillator, drive, name, scale)
+        parameters = dict(ELEMENTS[name].published) if home else sized(random, oscillator, drive, name, scale, shares)
         elements.append((name, parameters))
         found = examined(oscillator, elements[-1:], *advanced(oscillator, elements[-1:], drive))
         enough = enough and sufficient(name, key, *found)
@@ -262,14 +262,17 @@ def model_of(random, oscillator, hidden):
             "fixed": [f"/base/layers/0/{name}" for name in fixed], "effects": inertia}
 
 
-def make(seed, hidden):
-    """Returns the set with this seed and these hidden elements; the same arguments give the same set."""
+def make(seed, hidden, shares=(0.04, 0.10)):
+    """Returns the set with this seed and these hidden elements; the same arguments give the same set.
+
+    shares: of the force's rms, for elements that are foreign to the rig; at home they have the published numbers.
+    """
     unknown = [name for name in hidden if name not in ELEMENTS]
     if unknown:
         raise ValueError(f"{unknown[0]} is no effect of {NAME}")
     for draw in range(1, 21):
         random = numpy.random.default_rng([seed, draw] + [zlib.crc32(name.encode()) for name in hidden])
-        key, level_N, elements, enough = drawn(random, hidden)
+        key, level_N, elements, enough = drawn(random, hidden, shares)
         if enough:
             break
     oscillator = OSCILLATORS[key]

@@ -91,9 +91,9 @@ class World:
         left = y - columns @ np.linalg.lstsq(columns, y, rcond=None)[0]
         return float(np.linalg.norm(left) / max(np.linalg.norm(y), 1e-12))
 
-    def size_effect(self, effect, rng):
+    def size_effect(self, effect, rng, shares):
         """The effect's numbers at which it makes the drawn share of the force, and what they come to."""
-        target, drawn = between(rng, *SHARES), effect.draw(rng, self.bone, self.probe)
+        target, drawn = between(rng, *shares), effect.draw(rng, self.bone, self.probe)
         x, known = effect.start, []
         for _ in range(6):
             q = effect.numbers(x, drawn)
@@ -211,14 +211,14 @@ def stated_model(seed, probe, bone, volume):
     return model, {name: getattr(probe, name) for name in names}, {name: most for name, most in off.items() if most}
 
 
-def good(figures):
+def good(figures, shares=SHARES):
     """Of the wanted size, not taken up by the base, not mostly moments at which the probe snaps over edges, solved."""
-    return (0.9 * SHARES[0] < figures["share_of_force_rms"] < 1.1 * SHARES[1]
+    return (0.9 * shares[0] < figures["share_of_force_rms"] < 1.1 * shares[1]
             and figures["left_after_base_refit"] > LEAST_LEFT and figures["unsettled_share"] < 0.02
             and figures["energy_outside_largest_0.5_percent"] > 0.3)
 
 
-def draw_hidden(seed, hidden, bone):
+def draw_hidden(seed, hidden, bone, shares):
     """World and sized effects of the first draw that is good enough, else of the best one, and whether it is."""
     best = None
     for attempt in range(DRAWS):
@@ -228,12 +228,12 @@ def draw_hidden(seed, hidden, bone):
             continue
         for name in hidden:
             rng = np.random.default_rng([seed, attempt, 4, *name.encode()])
-            sized.append((EFFECTS[name], *world.size_effect(EFFECTS[name], rng)))
-            if not good(sized[-1][2]):
+            sized.append((EFFECTS[name], *world.size_effect(EFFECTS[name], rng, shares)))
+            if not good(sized[-1][2], shares):
                 break
         else:
             return world, sized, True, attempt + 1
-        score = sum(good(figures) + figures["left_after_base_refit"] for _, _, figures in sized)
+        score = sum(good(figures, shares) + figures["left_after_base_refit"] for _, _, figures in sized)
         if len(sized) == len(hidden) and (best is None or score > best[0]):
             best = score, world, sized
     return best[1], best[2], False, DRAWS
@@ -244,10 +244,13 @@ def plain(value):
     return np.asarray(value, float).tolist() if not isinstance(value, (str, int)) else value
 
 
-def make(seed, hidden):
-    """A set with the named effects hidden in it; the same bytes for the same arguments."""
+def make(seed, hidden, shares=SHARES):
+    """A set with the named effects hidden in it; the same bytes for the same arguments.
+
+    Each effect makes a log-uniform share of the force's rms between the two shares.
+    """
     bone = draw_bone(np.random.default_rng([seed, 0]))
-    world, sized, accepted, draws = draw_hidden(seed, hidden, bone)
+    world, sized, accepted, draws = draw_hidden(seed, hidden, bone, shares)
     probe, pairs = world.probe, [(effect, q) for effect, q, _ in sized]
     wrench, unsettled_N = world.wrench(pairs) if pairs else (world.base, 0.0)
     rng = np.random.default_rng([seed, 5])

@@ -399,9 +399,9 @@ def contributions(motions, base, name, parameters):
     return [true_forces(m, base, [(name, parameters)])[index] - f for m, f in zip(motions, plain)], plain
 
 
-def sized(random, motions, base, name, scale):
-    """Draws the parameters of an effect so that it makes 4 to 10 % of its channel's rms. Returns them and the share."""
-    law, target = LAWS[name], log_uniform(random, 0.04, 0.10)
+def sized(random, motions, base, name, scale, shares):
+    """Draws the parameters of an effect so that it makes a drawn share of its channel's rms, and what it adds."""
+    law, target = LAWS[name], log_uniform(random, *shares)
     shape, size, share = law.draw(random, scale), law.guess, 0.0
     ratios = {tied: shape.pop(source) for tied, source in law.tied.items()}
     for _ in range(8):
@@ -416,7 +416,7 @@ def sized(random, motions, base, name, scale):
     return {key: float(value) if isinstance(value, float) else value for key, value in parameters.items()}, added, share
 
 
-def attempt(random, hidden):
+def attempt(random, hidden, shares):
     """Draws base, motion and effects once. Returns them as a dictionary."""
     turning = any(LAWS[name].turns for name in hidden) or random.uniform() < 0.85
     base = draw_base(random, turning)
@@ -435,7 +435,7 @@ def attempt(random, hidden):
              "work_J": numpy.mean([numpy.abs(f * m.v).sum() * STEP_S for (f, _), m in zip(plain, motions)])}
     found = []
     for name in hidden:
-        parameters, added, share = sized(random, motions, base, name, scale)
+        parameters, added, share = sized(random, motions, base, name, scale, shares)
         columns = [base_columns(m, base, LAWS[name].channel, equilibrium_known) for m in motions]
         left = recording.share_left([a[::20] for a in added], columns)
         found.append((name, parameters, share, left))
@@ -455,15 +455,18 @@ def described(name, parameters, share, left, motions):
             "channel": LAWS[name].channel, "share_of_force_rms": share, "left_after_base_refit": left}
 
 
-def make(seed, hidden):
-    """Returns the set with this seed and these hidden effects; the same arguments give the same set."""
+def make(seed, hidden, shares=(0.04, 0.10)):
+    """Returns the set with this seed and these hidden effects; the same arguments give the same set.
+
+    Each effect makes a log-uniform share of its channel's rms between the two shares.
+    """
     unknown = [name for name in hidden if name not in LAWS]
     if unknown:
         raise ValueError(f"{unknown[0]} is no effect of {NAME}")
     for draw in range(1, 21):
         random = numpy.random.default_rng([seed, draw] + [zlib.crc32(name.encode()) for name in hidden])
-        drawn = attempt(random, hidden)
-        accepted = all(left >= 0.5 and 0.035 < share < 0.11 for _, _, share, left in drawn["found"])
+        drawn = attempt(random, hidden, shares)
+        accepted = all(left >= 0.5 and 0.875 * shares[0] < share < 1.1 * shares[1] for _, _, share, left in drawn["found"])
         if accepted:
             break
     base, motions = drawn["base"], drawn["motions"]
