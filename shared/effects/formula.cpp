@@ -61,16 +61,16 @@ class Checker {
   Checker(std::string_view text, std::span<const Quantity> quantities)
       : text_(text), quantities_(quantities), uses_(quantities.size()) {}
 
-  core::Result<FormulaFacts> run(const Dimension& expected) {
+  core::Result<FormulaFacts> run(const std::optional<Dimension>& expected) {
     const Part whole = choice();
     skip_spaces();
     if (error_.empty() && at_ < text_.size())
       fail(fmt::format("`{}`: an operator or the end is expected", text_.substr(at_, 20)));
-    if (error_.empty() && !whole.zero && whole.dimension != expected)
+    if (error_.empty() && expected && !whole.zero && whole.dimension != *expected)
       fail(fmt::format("`{}`: {} where {} is expected", text_, whole.dimension.text(),
-                       expected.text()));
+                       expected->text()));
     if (!error_.empty()) return core::Error{core::Errc::bad_input, error_};
-    return FormulaFacts{uses_, whole.vanishes, std::move(memories_)};
+    return FormulaFacts{whole.dimension, uses_, whole.vanishes, std::move(memories_)};
   }
 
  private:
@@ -428,7 +428,7 @@ bool is_free_name(std::string_view name) {
 
 core::Result<FormulaFacts> check_formula(std::string_view formula,
                                          std::span<const Quantity> quantities,
-                                         const Dimension& expected) {
+                                         const std::optional<Dimension>& expected) {
   if (formula.size() > kLongest)
     return core::Error{
         core::Errc::too_large,

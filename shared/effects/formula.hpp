@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -29,12 +30,14 @@ struct MemoryCall {
 
 /// What the check of a formula found out.
 struct FormulaFacts {
+  Dimension dimension;         ///< of the result
   std::vector<bool> uses;            ///< by quantity: does the formula name it?
   std::vector<bool> vanishes;        ///< by quantity: is the result surely 0 where it always is 0?
   std::vector<MemoryCall> memories;  ///< those inside another's arguments before it
 };
 
-/// Reads a formula and derives the dimension of every part of it.
+/// Reads a formula and derives the dimension of every part of it; the whole must have the one that
+/// is expected, if one is.
 ///
 ///     choice   = either ["?" choice ":" choice]
 ///     either   = both {"||" both}              both     = compared {"&&" compared}
@@ -51,7 +54,7 @@ struct FormulaFacts {
 /// nearest that is one.
 core::Result<FormulaFacts> check_formula(std::string_view formula,
                                          std::span<const Quantity> quantities,
-                                         const Dimension& expected);
+                                         const std::optional<Dimension>& expected);
 /// Is it a name that quantities may have: letters, digits, _, not a function's or a constant's?
 bool is_free_name(std::string_view name);
 

@@ -77,6 +77,22 @@ ProbingMotion cycles(double rate_Hz, double length_s) {
   return m;
 }
 
+/// The same way, in more slowly than out, so that drag that differs with the direction shows.
+ProbingMotion skewed_cycles(double rate_Hz, double length_s) {
+  ProbingMotion m = cycles(rate_Hz, length_s);
+  const double w = std::numbers::pi, a_m = 0.008, skew = 0.4;
+  for (std::size_t k = 0; k < m.size(); ++k) {
+    const double turned = w * m.t_s[k];
+    const double phase = turned + skew * (std::cos(turned) - 1.0);
+    const double rate = w * (1.0 - skew * std::sin(turned));
+    const double bend = -w * w * skew * std::cos(turned);
+    m.x_m[k] = 0.010 - a_m * std::cos(phase);
+    m.v_m_s[k] = a_m * rate * std::sin(phase);
+    m.a_m_s2[k] = a_m * (rate * rate * std::cos(phase) + bend * std::sin(phase));
+  }
+  return m;
+}
+
 std::vector<double> predicted(const ProbingRuntime& runtime, const ProbingMotion& motion) {
   ProbingForces forces;
   runtime.predict(motion, forces);
@@ -236,7 +252,7 @@ double work_per_cycle_J(const ProbingEffectInfo& info, At at) {
   const bool on_bone = std::holds_alternative<std::unique_ptr<effects::BoneDepth>>(made) ||
                        std::holds_alternative<std::unique_ptr<effects::BoneScale>>(made);
   if (on_bone) spring.layers = {{0.0, kTravel_m, 4000.0, 1e-9, 0.0}};
-  const auto motion = cycles(4000.0, 6.0);
+  const auto motion = skewed_cycles(4000.0, 6.0);
   const auto force_N = predicted(runtime_of(spring, {use_of(info, at)}), motion);
   double work_J = 0.0;
   for (std::size_t k = motion.size() - 8000; k < motion.size(); ++k)
