@@ -109,9 +109,7 @@ TEST(Hysteresis, BuildsUpOverTheDisplacementWhateverTheRate) {
 TEST(BoucWen, SoftensAndUnloadsInClosedForm) {
   // k = 2e4 N/m, δ = 0.1 mm, g = 0.5, in by 0.1 mm: z = δ (1 − e^(−1.5))/1.5 → 1.035826453 N; back
   // by 0.02 mm: z = (z + 2 δ) e^(−0.1) − 2 δ → 0.556604206 N.
-  const auto there_and_back = [](double t) {
-    return t < 1.0 ? 1e-4 * t : 1e-4 - 1e-4 * (t - 1.0);
-  };
+  const auto there_and_back = [](double t) { return t < 1.0 ? 1e-4 * t : 1e-4 - 1e-4 * (t - 1.0); };
   for (const int n : {6, 600}) {
     const auto f = force_N({{"bouc_wen", {2e4, 1e-4, 0.5}}},
                            path(n, 1.2, there_and_back, [](double) { return 0.0; }));
