@@ -382,6 +382,8 @@ struct GrammarSettings {
 
 /// The search for a formula.
 struct DiscoverySettings {
+  /// Formulas whose held-out errors are reported beyond those proposed. Bound.
+  std::size_t spare = 2;
   /// Draws of the weights of trials for probabilities and stability. Bound.
   std::ptrdiff_t bootstraps = 400;
   /// A mean square of the whitened residual below this says nothing more: the noise is known no better. Tuned.
@@ -395,11 +397,11 @@ struct DiscoverySettings {
   /// Of a number without prior, this share of one residual's information is believed. Numeric.
   double vague = 1e-3;
   /// Formulas that are refitted in full after the screen. Bound.
-  std::size_t refitted = 10;
+  std::size_t refitted = 8;
   /// Of those, to which a second term is added. Bound.
-  std::size_t extended = 2;
+  std::size_t extended = 1;
   /// Second terms tried on each. Bound.
-  std::size_t second_terms = 3;
+  std::size_t second_terms = 4;
   /// A mean square below this leaves nothing for a second term. Tuned.
   double enough = 1.3;
   /// A formula must lower the error on this share of the held-out trials. Tuned.

@@ -158,7 +158,8 @@ class LabAnswers : public testing::Test {
         const double v = 0.007 * w * std::cos(w * t) + 0.0106 * std::cos(5.3 * t + trial);
         const double bone = 4000.0 * (x - 0.006) + 2000.0 * v;
         const double noise = 0.05 * std::sin(7919.0 * k * (k + 1.0 + trial));
-        csv << fmt::format("{},{},{}\n", t, x, bone + 0.3 * std::abs(bone) * (v > 0 ? 1 : -1) + noise);
+        csv << fmt::format("{},{},{}\n", t, x,
+                           bone + 0.3 * std::abs(bone) * (v > 0 ? 1 : -1) + noise);
       }
       trials += fmt::format(R"({}{{"id":"t{}","file":"t{}.csv"}})", trial ? "," : "", trial, trial);
     }
@@ -197,7 +198,8 @@ TEST_F(LabAnswers, AFormulaIsProposedForWhatNoCatalogueHasAndCanBeAdded) {
   const std::string sources = "--model " + at("rub.json") + " --measurements " + at("rub");
   fs::create_directories(folder_ / "found");
   std::string text;
-  ASSERT_EQ(run("diagnose --json --propose 3 --write-proposals " + at("found") + " " + sources, text), 0)
+  ASSERT_EQ(
+      run("diagnose --json --propose 3 --write-proposals " + at("found") + " " + sources, text), 0)
       << text;
   const auto json = core::parse_json(text, "diagnose");
   ASSERT_TRUE(json) << text.substr(0, 300);
@@ -216,7 +218,8 @@ TEST_F(LabAnswers, AFormulaIsProposedForWhatNoCatalogueHasAndCanBeAdded) {
   EXPECT_NE(text.find("dry friction (Coulomb) in proportion to the load"), std::string::npos);
 
   text.clear();
-  ASSERT_EQ(run("fit --json --effect " + at("found/proposal_1.json") + " " + sources, text), 0) << text;
+  ASSERT_EQ(run("fit --json --effect " + at("found/proposal_1.json") + " " + sources, text), 0)
+      << text;
   const auto fit = core::parse_json(text, "fit");
   ASSERT_TRUE(fit) << text.substr(0, 300);
   EXPECT_LT((*fit)["held_out_rmse"].get<double>(),

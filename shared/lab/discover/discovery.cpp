@@ -7,6 +7,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 
 #include "core/require.hpp"
 #include "lab/discover/formula_effect.hpp"
@@ -68,7 +69,10 @@ class FormulaSearch {
   double start_log_prior(const Structure& structure) const;
   Discovery answer();
   Proposal proposal_of(const FittedFormula& one, std::size_t number) const;
+  int size_of(const FittedFormula& one) const;
+  bool equals(const FittedFormula& simpler, const FittedFormula& one) const;
   std::vector<const FittedFormula*> front() const;
+  double with_larger(const FittedFormula& one, std::span<const double> of_found) const;
 
   const Problem& problem_;
   const Diagnosis& diagnosis_;
@@ -76,8 +80,8 @@ class FormulaSearch {
   const core::Progress& progress_;
   Residual residual_;
   std::vector<SearchStart> starts_;
-  std::optional<FormulaScreen> screen_;            // on the first start
-  std::vector<FormulaEffect> effects_;             // offered so far
+  std::optional<FormulaScreen> screen_;             // on the first start
+  std::vector<FormulaEffect> effects_;              // offered so far
   std::vector<std::unique_ptr<Problem>> problems_;  // with them
   std::optional<Residual> tried_residual_;
   std::vector<FittedFormula> found_;
@@ -124,7 +128,6 @@ bool FormulaSearch::refit(const Solution& from, const std::string& id, std::vect
   const LinearScreen screened = linear_screen(tried(), from, id);
   if (!screened.excited) return false;
   Solution at = extend(tried(), from, screened, id, 1);
-  differentiate(tried(), at);
   found_.push_back({std::move(at), std::move(ids), start});
   return true;
 }
@@ -158,16 +161,18 @@ void FormulaSearch::score() {
   }
 }
 
-/// A second term on the best single ones, then each of a pair alone, if it was not tried.
+/// A second term on the best single ones.
 void FormulaSearch::seconds() {
   if (found_.empty() || found_.front().evidence.mean_square < kDiscovery.enough) return;
   std::vector<FittedFormula> from(
       found_.begin(),
       found_.begin() + std::ptrdiff_t(std::min(kDiscovery.extended, found_.size())));
   std::vector<std::vector<std::string>> ids;
-  for (const FittedFormula& one : from)
+  for (FittedFormula& one : from) {
+    differentiate(tried(), one.solution);
     ids.push_back(
         offered(screen_->ranked(tried(), one.solution, correlation_), kDiscovery.second_terms));
+  }
   offer();
   for (std::size_t k = 0; k < from.size(); ++k)
     for (const std::string& id : ids[k]) {
@@ -177,18 +182,13 @@ void FormulaSearch::seconds() {
       const auto same = [&](const FittedFormula& f) { return f.solution.structure == both; };
       if (std::ranges::any_of(found_, same)) continue;
       refit(from[k].solution, id, {from[k].ids.front(), id}, from[k].start);
-      const Structure alone = plus(starts_[from[k].start].at.structure, id);
-      const auto tried_alone = [&](const FittedFormula& f) {
-        return f.solution.structure == alone;
-      };
-      if (std::ranges::none_of(found_, tried_alone))
-        refit(starts_[from[k].start].at, id, {id}, from[k].start);
     }
 }
 
 /// Held-out errors of the best.
 void FormulaSearch::report_best() {
-  if (found_.size() > options_.most + 3) found_.resize(options_.most + 3);
+  if (found_.size() > options_.most + kDiscovery.spare)
+    found_.resize(options_.most + kDiscovery.spare);
   for (FittedFormula& one : found_) {
     if (!go_on(0.9)) return;
     one.fit = report(tried(), one.solution, true);
@@ -234,25 +234,42 @@ double FormulaSearch::log_prior(const FittedFormula& one) const {
          double(one.ids.size()) * std::log(families) + std::log(double(one.ids.size()));
 }
 
-int size_of(const FittedFormula& one, const std::vector<FormulaEffect>& effects) {
-  int out = 0;
-  for (const std::string& id : one.ids) {
-    const auto& effect = *std::ranges::find(effects, id, &FormulaEffect::id);
-    out += int(effect.term.factors.size() + effect.facts.params.size());
-  }
+/// Factors and numbers, those of the catalogue's effects beside it among them.
+int FormulaSearch::size_of(const FittedFormula& one) const {
+  const auto count = [](const Solution& at) {
+    return int(at.structure.effects.size() + at.values.size());
+  };
+  int out = count(one.solution) - count(starts_.front().at);
+  for (const std::string& id : one.ids)
+    out += int(std::ranges::find(effects_, id, &FormulaEffect::id)->term.factors.size()) - 1;
   return out;
+}
+
+/// Does a simpler one as well as this one, but for what is not material?
+bool FormulaSearch::equals(const FittedFormula& simpler, const FittedFormula& one) const {
+  return size_of(simpler) < size_of(one) &&
+         simpler.fit.held_out_rmse < (1.0 + kSettings.selection.least_fall) * one.fit.held_out_rmse;
 }
 
 /// Those that no simpler one equals.
 std::vector<const FittedFormula*> FormulaSearch::front() const {
   std::vector<const FittedFormula*> out;
-  for (const FittedFormula& one : found_) {
-    const bool equalled = std::ranges::any_of(found_, [&](const FittedFormula& other) {
-      return size_of(other, effects_) < size_of(one, effects_) &&
-             other.fit.held_out_rmse <
-                 (1.0 + kSettings.selection.least_fall) * one.fit.held_out_rmse;
-    });
-    if (!equalled) out.push_back(&one);
+  for (const FittedFormula& one : found_)
+    if (std::ranges::none_of(found_,
+                             [&](const FittedFormula& other) { return equals(other, one); }))
+      out.push_back(&one);
+  return out;
+}
+
+/// A formula's own probability, and that of larger ones that hold it and add nothing material.
+double FormulaSearch::with_larger(const FittedFormula& one,
+                                  std::span<const double> of_found) const {
+  double out = 0.0;
+  for (std::size_t k = 0; k < found_.size(); ++k) {
+    const auto& theirs = found_[k].solution.structure.effects;
+    const auto& mine = one.solution.structure.effects;
+    const bool holds = std::ranges::includes(theirs, mine);
+    if (&found_[k] == &one || (holds && equals(one, found_[k]))) out += of_found[k];
   }
   return out;
 }
@@ -270,7 +287,7 @@ Proposal FormulaSearch::proposal_of(const FittedFormula& one, std::size_t number
   out.held_out_rmse = one.fit.held_out_rmse;
   out.trials = int(one.fit.trials.size());
   out.trials_improved = trials_improved(one.fit, *starts_[one.start].fit);
-  out.size = size_of(one, effects_);
+  out.size = size_of(one);
   const auto work = tried().problem().formula_terms()->work_of_cycles(one.solution.structure,
                                                                       one.solution.values);
   out.passive = work.taken_J >= -kDiscovery.active_share * work.turned_over_J;
@@ -306,10 +323,9 @@ Discovery FormulaSearch::answer() {
     out.unknown_probability += probability[starts_.size() + k];
   if (!unknown.empty()) out.unknown = std::move(unknown.front());
   for (const FittedFormula* one : front()) {
-    const auto k = std::size_t(one - found_.data());
     Proposal proposal = proposal_of(*one, out.proposals.size() + 1);
-    proposal.probability = probability[formulas + k];
-    proposal.stability = best[formulas + k];
+    proposal.probability = with_larger(*one, std::span(probability).subspan(formulas));
+    proposal.stability = with_larger(*one, std::span(best).subspan(formulas));
     if (out.unknown_probability > 0.5 ||
         proposal.held_out_rmse > kDiscovery.far_from_floor * out.noise_floor)
       proposal.probability = std::min(proposal.probability, kDiscovery.most_if_far);
@@ -330,7 +346,8 @@ core::Result<Discovery> FormulaSearch::run() {
   if (!stopped_) score();
   if (!stopped_) seconds();
   if (!stopped_) score();
-  if (!stopped_) report_best();
+  if (!stopped_) report_best();  // which differentiates anew
+  if (!stopped_) score();
   if (stopped_) return Error{Errc::cancelled, "stopped"};
   return answer();
 }

@@ -83,8 +83,8 @@ TEST(Discovery, WritesDownFrictionInProportionToTheLoad) {
   EXPECT_TRUE(best.passive);
   EXPECT_THAT(sentences(found.discovery, "N"), HasSubstr("in proportion to the load (Amontons)"));
   // What is proposed is a user effect as it stands.
-  const auto effect = effects::Expression::from_json(best.terms[0].effect, "",
-                                                     effects::probing_expressions());
+  const auto effect =
+      effects::Expression::from_json(best.terms[0].effect, "", effects::probing_expressions());
   ASSERT_TRUE(effect) << effect.error().what;
   EXPECT_EQ(effect->facts().id, "expression:proposal_1");
 }
@@ -95,8 +95,7 @@ TEST(Discovery, FindsTheNumbersOfHysteresisThatHardens) {
   const Found found = found_in([&](double x, double, double, bool first) {
     if (first) z = 0.0, before = x;
     const double dx = (x - before) / 200.0;
-    for (int k = 0; k < 200; ++k)
-      z += dx - (std::abs(dx) * z - 1.2 * dx * std::abs(z)) / 1.5e-3;
+    for (int k = 0; k < 200; ++k) z += dx - (std::abs(dx) * z - 1.2 * dx * std::abs(z)) / 1.5e-3;
     before = x;
     return 1500.0 * z;
   });

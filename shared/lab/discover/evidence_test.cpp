@@ -34,10 +34,10 @@ TEST(LeaveOneOut, IsTheDensityOfATrialGivenTheOthers) {
   double variance = 0.0;  // of all trials about their fit
   for (int round = 0; round < 2; ++round) {
     double squares = 0.0;
-    const double weight = round == 0 ? 120.0 / (trials[0].rr + trials[1].rr + trials[2].rr)
-                                     : 1.0 / variance;
-    const double m = -weight * (trials[0].b(0) + trials[1].b(0) + trials[2].b(0)) /
-                     (0.25 + weight * 120.0);
+    const double weight =
+        round == 0 ? 120.0 / (trials[0].rr + trials[1].rr + trials[2].rr) : 1.0 / variance;
+    const double m =
+        -weight * (trials[0].b(0) + trials[1].b(0) + trials[2].b(0)) / (0.25 + weight * 120.0);
     for (const auto& one : r) squares += (one.array() + 2.0 + m).square().sum();
     variance = squares / 120.0;
   }
@@ -49,8 +49,8 @@ TEST(LeaveOneOut, IsTheDensityOfATrialGivenTheOthers) {
       own * Eigen::MatrixXd::Identity(40, 40) + z * z.transpose() / known;
   const Eigen::VectorXd off = r[0].array() + 2.0 + mean;
   const double density =
-      -0.5 * (40.0 * std::log(2.0 * std::numbers::pi) +
-              std::log(covariance.determinant()) + off.dot(covariance.inverse() * off));
+      -0.5 * (40.0 * std::log(2.0 * std::numbers::pi) + std::log(covariance.determinant()) +
+              off.dot(covariance.inverse() * off));
   EXPECT_NEAR(found.log_score(0), density, 1e-6);
   EXPECT_NEAR(found.change(0), -2.0, 0.3);
 }
@@ -62,7 +62,8 @@ TEST(LeaveOneOut, PrefersNoColumnToOneOfNoise) {
     none.push_back({Eigen::MatrixXd(0, 0), Eigen::VectorXd(0), r[t].squaredNorm(), 200.0});
     with.push_back({z[t].transpose() * z[t], z[t].transpose() * r[t], r[t].squaredNorm(), 200.0});
   }
-  const double without = leave_one_out(none, {Eigen::MatrixXd(0, 0), Eigen::VectorXd(0)}, 1.0).total;
+  const double without =
+      leave_one_out(none, {Eigen::MatrixXd(0, 0), Eigen::VectorXd(0)}, 1.0).total;
   const LinearPrior weak{Eigen::MatrixXd::Constant(1, 1, 1e-3), Eigen::VectorXd::Zero(1)};
   EXPECT_LT(leave_one_out(with, weak, 1.0).total, without + 1.0);
 }

@@ -114,6 +114,8 @@ class Factors {
     add(FactorPart::speed, "sgn(v_m_s)", "1", "dry friction (Coulomb)").odd_in_speed = true;
     add(FactorPart::speed, "abs(v_m_s)", "m/s",
         "viscous drag that depends on the direction of motion");
+    add(FactorPart::speed, "max(v_m_s, 0)", "m/s", "viscous drag on the way in alone");
+    add(FactorPart::speed, "min(v_m_s, 0)", "m/s", "viscous drag on the way out alone");
     add(FactorPart::speed, "v_m_s*abs(v_m_s)", "m^2/s^2", "quadratic drag").odd_in_speed = true;
     add(FactorPart::speed, "v_m_s^3", "m^3/s^3", "cubic drag").odd_in_speed = true;
     for (const double v : from_to(0.5 * s_.slow_m_s, s_.fast_m_s, 7)) {

@@ -45,8 +45,8 @@ TEST(Grammar, MakesEffectsOfItsTerms) {
   EXPECT_GT(seen.size(), 100u);
   // Of the oscillators and of others' hidden physics.
   for (const char* family :
-       {"bouc_wen(x_m, yield_m, g)", "abs(base_N) * sgn(v_m_s)", "abs(v_m_s)",
-        "(x_m - centre_m)^3", "resonator(x_m, frequency_Hz, damping_ratio)",
+       {"bouc_wen(x_m, yield_m, g)", "abs(base_N) * sgn(v_m_s)", "abs(v_m_s)", "(x_m - centre_m)^3",
+        "resonator(x_m, frequency_Hz, damping_ratio)",
         "sgn(v_m_s) * since_reversal(x_m)/(since_reversal(x_m) + way_m)",
         "base_N * (1 - exp(-work(base_N, x_m)/work_J))", "sgn(v_m_s)*abs(v_m_s)^0.4",
         "exp(-((x_m - centre_m)/width_m)^2) * sgn(v_m_s)"})
