@@ -14,7 +14,7 @@ namespace {
 std::vector<Eigen::VectorXd> noise(int trials, int rows, unsigned seed) {
   std::mt19937_64 random(seed);
   std::normal_distribution<double> one;
-  std::vector<Eigen::VectorXd> out(std::size_t(trials), Eigen::VectorXd(rows));
+  std::vector<Eigen::VectorXd> out(static_cast<std::size_t>(trials), Eigen::VectorXd::Zero(rows));
   for (auto& trial : out)
     for (double& v : trial) v = one(random);
   return out;
