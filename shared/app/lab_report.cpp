@@ -163,6 +163,7 @@ std::string printed_diagnosis(const lab_io::LabResult& answer) {
     out += fmt::format("\nThese measurements hardly distinguish {} and {}.", effects::label_of(a),
                        effects::label_of(b));
   if (!d.confounded.empty()) out += "\n";
+  if (answer.discovery) out += "\n" + lab::sentences(*answer.discovery, unit);
   if (d.discriminating_experiment)
     out +=
         fmt::format("\nRecommended next recording: {}.\n", d.discriminating_experiment->recording);

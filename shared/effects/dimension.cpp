@@ -22,20 +22,22 @@ core::Error no_unit(std::string_view unit, std::string_view part) {
                   unit, part)};
 }
 
-/// A unit's symbol and, after ^, its power: "s^2", "m^-1".
-struct Factor {
+/// A unit's symbol and, after ^, its power: "s^2", "m^-1", "s^0.4".
+struct UnitFactor {
   std::string_view symbol;
-  int power = 1;
+  double power = 1.0;
 };
 
-std::optional<Factor> factor_of(std::string_view part) {
+std::optional<UnitFactor> factor_of(std::string_view part) {
   const auto caret = part.find('^');
-  if (caret == std::string_view::npos) return Factor{part, 1};
+  if (caret == std::string_view::npos) return UnitFactor{part, 1.0};
   const std::string power(part.substr(caret + 1));
   char* end = nullptr;
-  const long value = std::strtol(power.c_str(), &end, 10);
-  if (power.empty() || *end != '\0' || std::labs(value) > 12) return std::nullopt;
-  return Factor{part.substr(0, caret), int(value)};
+  const double value = std::strtod(power.c_str(), &end);
+  const bool sixtieth = std::abs(60.0 * value - std::round(60.0 * value)) < 1e-6;
+  if (power.empty() || *end != '\0' || !(std::abs(value) <= 12.0) || !sixtieth)
+    return std::nullopt;
+  return UnitFactor{part.substr(0, caret), value};
 }
 
 void print(std::string& over, std::string& under, const char* symbol, int sixtieths) {

@@ -16,7 +16,7 @@ class Dimension {
  public:
   constexpr Dimension() = default;
   /// A unit as people write it: "N*s^2/m^2", "1/m", "rad/s", "N·m", "1". Units: m kg s N Pa J W Hz
-  /// rad. Errors: bad_input naming the part that is no unit.
+  /// rad; a power may be a multiple of 1/60, as in "N*s^0.4/m^0.4". Errors: bad_input naming the part that is no unit.
   static core::Result<Dimension> parse(std::string_view unit);
 
   bool plain() const noexcept { return *this == Dimension(); }  ///< of a number without unit

@@ -127,9 +127,15 @@ core::Result<Expression> Expression::from_json(const Json& json, const std::stri
     TRY(own.done());
     out.quantities_.push_back({name, *unit});
   }
-  const auto found = check_formula(facts.equation, out.quantities_, *Dimension::parse(rig.unit));
+  auto found = check_formula(facts.equation, out.quantities_, *Dimension::parse(rig.unit));
   if (!found)
     return Error{found.error().code, fmt::format("{}/formula: {}", where, found.error().what)};
+  if (!found->memories.empty() && !rig.remembers)
+    return Error{Errc::bad_input,
+                 fmt::format("{}/formula: a formula of the {} rig knows the present moment alone; "
+                             "{} and the other operators that remember are of the probing rig",
+                             where, rig.rig, memory_operators().front().name)};
+  out.memories_ = std::move(found->memories);
   for (std::size_t k = 0; k < facts.params.size(); ++k) {
     const std::size_t quantity = rig.states.size() + k;
     Param& param = facts.params[k];
@@ -187,7 +193,7 @@ EffectInstance Expression::use(std::vector<double> values) const {
 }
 
 core::Result<FormulaProgram> Expression::program() const {
-  return FormulaProgram::make(facts_.equation, quantities_);
+  return FormulaProgram::make(facts_.equation, quantities_, memories_);
 }
 
 }  // namespace effects

@@ -28,6 +28,7 @@ struct ExpressionRig {
   std::string_view unit;     ///< that the result must have: "N"
   std::span<const ExpressionState> states;
   std::string_view experiment;  ///< what to record so that an unknown formula shows
+  bool remembers = true;        ///< takes operators that remember
 };
 /// fz_N, added to the resisting force: from x_m v_m_s a_m_s2 theta_rad omega_rad_s t_s tz_Nm
 /// base_N.
@@ -66,6 +67,7 @@ class Expression {
   std::string rig_, adds_to_;
   std::vector<std::string> units_;    // of the parameters
   std::vector<Quantity> quantities_;  // states, then parameters
+  std::vector<MemoryCall> memories_;  // of the formula
   EffectFacts facts_;                 // equation: the formula
 };
 

@@ -42,6 +42,8 @@ constexpr std::array<Function, 17> kFunctions{{{"abs", Rule::same, true},
                                                {"cosh", Rule::plain, false},
                                                {"tanh", Rule::plain, true}}};
 
+const Dimension kSecond = *Dimension::parse("s"), kMetre = *Dimension::parse("m");
+
 bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; }
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
@@ -59,16 +61,16 @@ class Checker {
   Checker(std::string_view text, std::span<const Quantity> quantities)
       : text_(text), quantities_(quantities), uses_(quantities.size()) {}
 
-  core::Result<FormulaFacts> run(const Dimension& expected) {
+  core::Result<FormulaFacts> run(const std::optional<Dimension>& expected) {
     const Part whole = choice();
     skip_spaces();
     if (error_.empty() && at_ < text_.size())
       fail(fmt::format("`{}`: an operator or the end is expected", text_.substr(at_, 20)));
-    if (error_.empty() && !whole.zero && whole.dimension != expected)
+    if (error_.empty() && expected && !whole.zero && whole.dimension != *expected)
       fail(fmt::format("`{}`: {} where {} is expected", text_, whole.dimension.text(),
-                       expected.text()));
+                       expected->text()));
     if (!error_.empty()) return core::Error{core::Errc::bad_input, error_};
-    return FormulaFacts{uses_, whole.vanishes};
+    return FormulaFacts{whole.dimension, uses_, whole.vanishes, std::move(memories_)};
   }
 
  private:
@@ -280,7 +282,9 @@ class Checker {
     if (take("(")) return call(from, name);
     const auto found = std::ranges::find(quantities_, name, &Quantity::name);
     if (found == quantities_.end()) {
-      fail(fmt::format("`{}` is neither a parameter nor one of {}", name, names()));
+      const std::string near = nearest_name(name);
+      fail(fmt::format("`{}` is neither a parameter nor one of {}{}", name, names(),
+                       near.empty() ? "" : fmt::format("; did you mean {}?", near)));
       return plain(from);
     }
     const auto k = std::size_t(found - quantities_.begin());
@@ -291,6 +295,7 @@ class Checker {
     return out;
   }
   Part call(std::size_t from, const std::string& name) {
+    if (const auto* memory = find_memory_operator(name)) return remembered(from, *memory);
     const auto found = std::ranges::find(kFunctions, name, &Function::name);
     if (found == kFunctions.end()) {
       fail(fmt::format("`{}` is not a function; {} are", name, functions()));
@@ -319,6 +324,79 @@ class Checker {
       fail(fmt::format("`{}`: {} has no root", text(first), first.dimension.text()));
     return out;
   }
+  Part remembered(std::size_t from, const MemoryOperatorInfo& info) {
+    MemoryCall call{info.id, from, 0, {}};
+    std::vector<Part> given;
+    for (std::size_t k = 0; k < info.count && error_.empty(); ++k) {
+      if (k > 0 && !take(",")) break;
+      skip_spaces();
+      const std::size_t begins = at_;
+      given.push_back(choice());
+      call.arguments.emplace_back(begins, at_);
+    }
+    if (error_.empty() && (given.size() < info.count || !take(")")))
+      fail(fmt::format("`{}`: {}({}) is expected", text(from, at_), info.name, info.arguments));
+    if (!error_.empty()) return plain(from);
+    for (std::size_t k = 0; k < given.size(); ++k) need(info.takes[k], given[k], given[0], info);
+    call.to = at_;
+    memories_.push_back(std::move(call));
+    if (memories_.size() > kMostMemories)
+      fail(fmt::format("at most {} operators that remember are taken", kMostMemories));
+    Part out = plain(from);
+    out.dimension = info.gives == MemoryUnit::as_first  ? given[0].dimension
+                    : info.gives == MemoryUnit::product ? given[0].dimension * given[1].dimension
+                    : info.gives == MemoryUnit::second  ? kSecond
+                                                        : given[0].dimension / (kSecond * kSecond);
+    if (info.zero_of_zero) out.vanishes = given[0].vanishes;
+    if (info.gives == MemoryUnit::product)
+      out.vanishes = combined(given[0], given[1], std::logical_or<>());
+    return out;
+  }
+  void need(MemoryArgument what, const Part& part, const Part& first,
+            const MemoryOperatorInfo& info) {
+    const std::optional<Dimension> wanted = what == MemoryArgument::as_first ? first.dimension
+                                            : what == MemoryArgument::plain  ? Dimension()
+                                            : what == MemoryArgument::second ? kSecond
+                                            : what == MemoryArgument::hertz  ? Dimension() / kSecond
+                                            : what == MemoryArgument::length ? kMetre
+                                            : what == MemoryArgument::speed
+                                                ? kMetre / kSecond
+                                                : std::optional<Dimension>();
+    if (wanted && !part.zero && part.dimension != *wanted)
+      fail(fmt::format("`{}`: {} where {}({}) takes {}", text(part), part.dimension.text(),
+                       info.name, info.arguments, wanted->text()));
+  }
+  /// A quantity that was likely meant: "v_m_s" for "v" or "V_m_s"; empty for none.
+  std::string nearest_name(std::string_view name) const {
+    const auto small = [](std::string_view text) {
+      std::string out(text);
+      for (char& c : out) c = char(c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c);
+      return out;
+    };
+    std::string best;
+    std::size_t least = 1 + name.size() / 3;
+    for (const Quantity& q : quantities_) {
+      const std::string theirs = small(q.name), ours = small(name);
+      if (theirs.starts_with(ours + "_") || ours.starts_with(theirs + "_")) return q.name;
+      if (const std::size_t off = edits(ours, theirs); off <= least) least = off, best = q.name;
+    }
+    return best;
+  }
+  /// Letters to insert, drop or change [Levenshtein1966].
+  static std::size_t edits(std::string_view a, std::string_view b) {
+    std::vector<std::size_t> row(b.size() + 1);
+    for (std::size_t j = 0; j < row.size(); ++j) row[j] = j;
+    for (std::size_t i = 1; i <= a.size(); ++i) {
+      std::size_t corner = row[0];
+      row[0] = i;
+      for (std::size_t j = 1; j <= b.size(); ++j) {
+        const std::size_t above = row[j];
+        row[j] = std::min({above + 1, row[j - 1] + 1, corner + (a[i - 1] != b[j - 1])});
+        corner = above;
+      }
+    }
+    return row.back();
+  }
   std::string names() const {
     std::string out;
     for (const Quantity& q : quantities_) out += (out.empty() ? "" : ", ") + q.name;
@@ -327,12 +405,14 @@ class Checker {
   static std::string functions() {
     std::string out;
     for (const Function& f : kFunctions) out += (out.empty() ? "" : ", ") + std::string(f.name);
+    for (const auto& memory : memory_operators()) out += ", " + std::string(memory.name);
     return out;
   }
 
   std::string_view text_;
   std::span<const Quantity> quantities_;
   std::vector<bool> uses_;
+  std::vector<MemoryCall> memories_;
   std::size_t at_ = 0;
   int depth_ = 0;
   std::string error_;
@@ -348,7 +428,7 @@ bool is_free_name(std::string_view name) {
 
 core::Result<FormulaFacts> check_formula(std::string_view formula,
                                          std::span<const Quantity> quantities,
-                                         const Dimension& expected) {
+                                         const std::optional<Dimension>& expected) {
   if (formula.size() > kLongest)
     return core::Error{
         core::Errc::too_large,

@@ -65,8 +65,12 @@ const ExpressionRig& palpation_expressions() {
        {"base_N", "N", "size of the point's elastic force"},
        {"opacity", "1", "blurred opacity of the bone at the point"}}};
   static constexpr ExpressionRig kRig{
-      "palpation", "f_N", "N", kStates,
-      "presses into one wall and slides along it, each at three speeds"};
+      "palpation",
+      "f_N",
+      "N",
+      kStates,
+      "presses into one wall and slides along it, each at three speeds",
+      false};
   return kRig;
 }
 

@@ -24,7 +24,21 @@ class ExpressionForce final : public ProbeForce {
       : program_(std::move(program)) {
     std::ranges::copy(values, program_.inputs().last(values.size()).begin());
   }
-  double force_N(const ProbingTick& tick, double base_N, ProbingMemory&) const noexcept override {
+  double force_N(const ProbingTick& tick, double base_N,
+                 ProbingMemory& memory) const noexcept override {
+    if (program_.remembers() && !memory.formula.started && tick.dt_s > 0.0) {
+      // Live, the first moment that is asked for comes after the start: there the probe rested.
+      ProbingTick start = tick;
+      start.t_s -= tick.dt_s;
+      start.x_m = memory.depth_m;
+      start.v_m_s = start.a_m_s2 = 0.0;
+      value(start, base_N, memory.formula);
+    }
+    return value(tick, base_N, memory.formula);
+  }
+
+ private:
+  double value(const ProbingTick& tick, double base_N, FormulaMemory& memory) const noexcept {
     const auto in = program_.inputs();
     in[0] = tick.x_m;
     in[1] = std::abs(tick.v_m_s) <= tick.rest_m_s ? 0.0 : tick.v_m_s;
@@ -34,10 +48,9 @@ class ExpressionForce final : public ProbeForce {
     in[5] = tick.t_s;
     in[6] = tick.tz_Nm;
     in[7] = base_N;
-    return program_.value();
+    return program_.value({tick.dt_s, tick.rest_m_s}, memory);
   }
 
- private:
   FormulaProgram program_;
 };
 

@@ -32,6 +32,7 @@
 
 #include "core/result.hpp"
 #include "effects/effect.hpp"
+#include "effects/memory_operator.hpp"
 
 namespace tractus::effects {
 
@@ -72,6 +73,7 @@ struct ProbingMemory {
   /// Before the first moment: the depth there.
   double depth_m = 0.0;
   std::array<double, 3> own{};  ///< before the first moment: 0
+  FormulaMemory formula = {};   ///< of a user's own effect
 };
 
 class BoneDepth {

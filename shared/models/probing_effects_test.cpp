@@ -106,6 +106,33 @@ TEST(Hysteresis, BuildsUpOverTheDisplacementWhateverTheRate) {
   }
 }
 
+TEST(BoucWen, SoftensAndUnloadsInClosedForm) {
+  // k = 2e4 N/m, δ = 0.1 mm, g = 0.5, in by 0.1 mm: z = δ (1 − e^(−1.5))/1.5 → 1.035826453 N; back
+  // by 0.02 mm: z = (z + 2 δ) e^(−0.1) − 2 δ → 0.556604206 N.
+  const auto there_and_back = [](double t) { return t < 1.0 ? 1e-4 * t : 1e-4 - 1e-4 * (t - 1.0); };
+  for (const int n : {6, 600}) {
+    const auto f = force_N({{"bouc_wen", {2e4, 1e-4, 0.5}}},
+                           path(n, 1.2, there_and_back, [](double) { return 0.0; }));
+    EXPECT_NEAR(f[std::size_t(n * 5 / 6)], 1.035826453, 1e-8) << n;
+    EXPECT_NEAR(f.back(), 0.556604206, 1e-8) << n;
+  }
+}
+
+TEST(BoucWen, IsDahlsWithoutItsShape) {
+  const auto wave = path(
+      2000, 2.0, [](double t) { return 1e-3 * std::sin(5.0 * t) + 2e-4 * std::sin(31.0 * t); },
+      [](double) { return 0.0; });
+  const auto a = force_N({{"bouc_wen", {2e4, 1e-4, 0.0}}}, wave);
+  const auto b = force_N({{"hysteresis", {2e4, 1e-4}}}, wave);
+  for (std::size_t k = 0; k < a.size(); ++k) ASSERT_NEAR(a[k], b[k], 1e-9) << k;
+}
+
+TEST(DirectionDependentDrag, AddsInAndTakesOut) {
+  // 50 N·s/m · 0.02 m/s = 1 N either way.
+  EXPECT_NEAR(force_N({{"direction_dependent_drag", {50.0}}}, moment(0.0, 0.02))[0], 1.0, 1e-12);
+  EXPECT_NEAR(force_N({{"direction_dependent_drag", {50.0}}}, moment(0.0, -0.02))[0], 1.0, 1e-12);
+}
+
 TEST(Hysteresis, StaysWhereItIsWhileTheProbeRests) {
   const auto f = force_N({{"hysteresis", {2e4, 1e-4}}},
                          path(

@@ -77,6 +77,22 @@ ProbingMotion cycles(double rate_Hz, double length_s) {
   return m;
 }
 
+/// The same way, in more slowly than out, so that drag that differs with the direction shows.
+ProbingMotion skewed_cycles(double rate_Hz, double length_s) {
+  ProbingMotion m = cycles(rate_Hz, length_s);
+  const double w = std::numbers::pi, a_m = 0.008, skew = 0.4;
+  for (std::size_t k = 0; k < m.size(); ++k) {
+    const double turned = w * m.t_s[k];
+    const double phase = turned + skew * (std::cos(turned) - 1.0);
+    const double rate = w * (1.0 - skew * std::sin(turned));
+    const double bend = -w * w * skew * std::cos(turned);
+    m.x_m[k] = 0.010 - a_m * std::cos(phase);
+    m.v_m_s[k] = a_m * rate * std::sin(phase);
+    m.a_m_s2[k] = a_m * (rate * rate * std::cos(phase) + bend * std::sin(phase));
+  }
+  return m;
+}
+
 std::vector<double> predicted(const ProbingRuntime& runtime, const ProbingMotion& motion) {
   ProbingForces forces;
   runtime.predict(motion, forces);
@@ -236,7 +252,7 @@ double work_per_cycle_J(const ProbingEffectInfo& info, At at) {
   const bool on_bone = std::holds_alternative<std::unique_ptr<effects::BoneDepth>>(made) ||
                        std::holds_alternative<std::unique_ptr<effects::BoneScale>>(made);
   if (on_bone) spring.layers = {{0.0, kTravel_m, 4000.0, 1e-9, 0.0}};
-  const auto motion = cycles(4000.0, 6.0);
+  const auto motion = skewed_cycles(4000.0, 6.0);
   const auto force_N = predicted(runtime_of(spring, {use_of(info, at)}), motion);
   double work_J = 0.0;
   for (std::size_t k = motion.size() - 8000; k < motion.size(); ++k)
@@ -290,16 +306,86 @@ TEST(AUsersOwnEffect, IsTheCataloguesWhereTheFormulaIs) {
   same("base_N / (1 + c * abs(omega_rad_s)) - base_N", "s", "rotation_coupling");
 }
 
+/// The same with a second number.
+effects::EffectInstance users_own(const char* formula, const char* unit, const char* other_unit,
+                                  double c, double d) {
+  const auto number = [](const char* of, double initial) {
+    return core::Json{{"unit", of}, {"initial", initial}, {"low", 0}, {"high", 1e7}};
+  };
+  const auto own = effects::Expression::from_json(
+      core::Json{{"format", "tractus-effect/1"},
+                 {"id", "expression:own"},
+                 {"rig", "probing"},
+                 {"adds_to", "fz_N"},
+                 {"formula", formula},
+                 {"parameters", {{"c", number(unit, c)}, {"d", number(other_unit, d)}}}},
+      "", effects::probing_expressions());
+  EXPECT_TRUE(own) << own.error().what;
+  return own->use();
+}
+
+TEST(AUsersOwnEffect, ThatRemembersIsTheCataloguesWhereTheLawIs) {
+  const auto motion = cycles(1000.0, 4.0);
+  const auto same = [&](const effects::EffectInstance& formula,
+                        const effects::EffectInstance& use) {
+    const auto own = runtime_of(bone(), {formula}), known = runtime_of(bone(), {use});
+    EXPECT_LT(greatest_difference(predicted(own, motion), predicted(known, motion)), 1e-9)
+        << use.id;
+    EXPECT_LT(
+        greatest_difference(live(own, 1e-3, 2.0).motion.x_m, live(known, 1e-3, 2.0).motion.x_m),
+        1e-9)
+        << use.id;
+  };
+  same(users_own("c * dahl(x_m, d)", "N/m", "m", 1e4, 1e-4), {"hysteresis", {1e4, 1e-4}});
+  same(users_own("c * (x_m - lag(x_m, d))", "N/m", "s", 500.0, 0.5),
+       {"viscoelastic_relaxation", {500.0, 0.5}});
+  same(users_own("c * (play(x_m, d) - x_m)", "N/m", "m", 4000.0, 3e-4), {"backlash", {3e-4, 0.0}});
+}
+
+TEST(AUsersOwnEffect, ThatRemembersGivesBackThePushOfALiveMotion) {
+  for (const auto& [formula, unit, other, c, d] :
+       {std::tuple{"c * lag(v_m_s, d)", "N*s/m", "s", 50.0, 0.1},
+        {"c * bouc_wen(x_m, d, 0.3)", "N/m", "m", 1e4, 3e-4},
+        {"c * since_reversal(x_m) * sgn(v_m_s) * exp(-since_reversal(x_m)/d)", "N/m", "m", 1e3,
+         1e-2},
+        {"-c * base_N * (1 - exp(-work(base_N, x_m)/d))", "1", "N*m", 0.2, 0.5},
+        {"c * resonator(x_m, d, 0.05)", "kg", "Hz", 0.3, 12.0}}) {
+    const auto runtime = runtime_of(bone(), {users_own(formula, unit, other, c, d)});
+    Course course = live(runtime, 1e-3, 2.0);
+    auto& m = course.motion;
+    m.t_s.insert(m.t_s.begin(), 0.0), m.x_m.insert(m.x_m.begin(), 0.005);
+    for (auto* all : {&m.v_m_s, &m.a_m_s2, &m.theta_rad}) all->insert(all->begin(), 0.0);
+    m.omega_rad_s.insert(m.omega_rad_s.begin(), kTurning_rad_s);
+    const auto force_N = predicted(runtime, m);
+    int moving = 0;
+    for (std::size_t k = 0; k < course.push_N.size(); ++k) {
+      if (m.v_m_s[k + 1] == 0.0) continue;
+      ++moving;
+      ASSERT_NEAR(force_N[k + 1], course.push_N[k], 1e-6) << formula << ", tick " << k;
+    }
+    EXPECT_GT(moving, 1000) << formula;
+  }
+}
+
 TEST(AUsersOwnEffect, AllocatesNothingInATick) {
   const auto runtime = runtime_of(
       bone(),
-      {users_own("x_m > 0 ? c * min(x_m, 2*x_m) * sgn(v_m_s)^3 * exp(-theta_rad^2) : 0*tz_Nm/x_m",
-                 "N/m")});
-  ProbingLive state{.at = {.x_m = 0.005}};
-  const loop::AllocationGuard guard;
-  for (int k = 0; k < 1000; ++k)
-    runtime.advance(push_N(double(k) * 1e-3), kTurning_rad_s, 1e-3, state);
-  EXPECT_EQ(guard.allocations(), 0u);
+      {
+          users_own(
+              "x_m > 0 ? c * min(x_m, 2*x_m) * sgn(v_m_s)^3 * exp(-theta_rad^2) : 0*tz_Nm/x_m",
+              "N/m"),
+      });
+  const auto remembers =
+      runtime_of(bone(), {users_own("c * lag(play(bouc_wen(x_m, d, 0), d), 0.1*t_s) * "
+                                    "since_stop(v_m_s)/(since_stop(v_m_s) + age(x_m, d))",
+                                    "N/m", "m", 300.0, 1e-3)});
+  for (const auto* one : {&runtime, &remembers}) {
+    ProbingLive state{.at = {.x_m = 0.005}};
+    const loop::AllocationGuard guard;
+    for (int k = 0; k < 1000; ++k)
+      one->advance(push_N(double(k) * 1e-3), kTurning_rad_s, 1e-3, state);
+    EXPECT_EQ(guard.allocations(), 0u);
+  }
 }
 
 std::vector<std::string> all_ids() {

@@ -144,6 +144,39 @@ class LabAnswers : public testing::Test {
           << section << ": the answer has no " << field;
     }
   }
+  /// The same rig with 0.3 of the bone's force as dry friction on top, which no effect of the
+  /// catalogue is: |4000 x + 2000 v|, and the probe passes the depth at which the spring is at rest.
+  static void write_rubbing_set() {
+    fs::create_directories(folder_ / "rub");
+    std::string trials;
+    for (int trial = 0; trial < 6; ++trial) {
+      std::ofstream csv(folder_ / fmt::format("rub/t{}.csv", trial));
+      csv << "t_s,x_m,fz_N\n";
+      for (int k = 0; k < 3000; ++k) {
+        const double t = 0.002 * k, w = 1.1 + 0.3 * trial;
+        const double x = 0.010 + 0.007 * std::sin(w * t) + 0.002 * std::sin(5.3 * t + trial);
+        const double v = 0.007 * w * std::cos(w * t) + 0.0106 * std::cos(5.3 * t + trial);
+        const double bone = 4000.0 * (x - 0.006) + 2000.0 * v;
+        const double noise = 0.05 * std::sin(7919.0 * k * (k + 1.0 + trial));
+        csv << fmt::format("{},{},{}\n", t, x,
+                           bone + 0.3 * std::abs(bone) * (v > 0 ? 1 : -1) + noise);
+      }
+      trials += fmt::format(R"({}{{"id":"t{}","file":"t{}.csv"}})", trial ? "," : "", trial, trial);
+    }
+    std::ofstream(folder_ / "rub/set.json")
+        << R"({"format":"tractus-measurements/1","rig":"probing","simulated":true,"trials":[)"
+        << trials << "]}";
+    std::ofstream(folder_ / "rub.json")
+        << R"({"format":"tractus-model/1","rig":"probing","name":"one layer","base":{"layers":[)"
+        << R"({"start_m":0,"thickness_m":0.05,"stiffness_N_per_m":3800,"damping_Ns_per_m":2100,)"
+        << R"("equilibrium_m":0.006}]},"effects":[]})";
+  }
+  static int run(const std::string& arguments, std::string& out) {
+    FILE* pipe = ::popen((kTractus + " " + arguments + " 2>&1").c_str(), "r");
+    char buffer[4096];
+    while (const std::size_t n = std::fread(buffer, 1, sizeof buffer, pipe)) out.append(buffer, n);
+    return WEXITSTATUS(::pclose(pipe));
+  }
   static fs::path folder_;
 };
 fs::path LabAnswers::folder_;
@@ -158,6 +191,48 @@ TEST_F(LabAnswers, ADiagnosisHasTheFieldsThatAreWrittenDown) {
   ASSERT_FALSE(json["confounded"].empty());
   ASSERT_FALSE(json["effects"].empty());
   expect_documented(json, "tractus-diagnosis/1");
+}
+
+TEST_F(LabAnswers, AFormulaIsProposedForWhatNoCatalogueHasAndCanBeAdded) {
+  write_rubbing_set();
+  const std::string sources = "--model " + at("rub.json") + " --measurements " + at("rub");
+  fs::create_directories(folder_ / "found");
+  std::string text;
+  ASSERT_EQ(
+      run("diagnose --json --propose 3 --write-proposals " + at("found") + " " + sources, text), 0)
+      << text;
+  const auto json = core::parse_json(text, "diagnose");
+  ASSERT_TRUE(json) << text.substr(0, 300);
+  expect_documented(*json, "tractus-diagnosis/1");
+  const auto& proposals = (*json)["discovery"]["proposals"];
+  ASSERT_FALSE(proposals.empty()) << text;
+  const auto& best = proposals[0];
+  EXPECT_EQ(best["formula"], "amplitude * abs(base_N) * sgn(v_m_s)");
+  EXPECT_NEAR(best["terms"][0]["numbers"]["amplitude"]["value"].get<double>(), 0.3, 0.006);
+  EXPECT_EQ(best["trials_improved"], 6);
+  EXPECT_TRUE(best["passive"]);
+
+  text.clear();
+  ASSERT_EQ(run("diagnose --propose 3 " + sources, text), 0) << text;
+  EXPECT_NE(text.find("1. amplitude * abs(base_N) * sgn(v_m_s)"), std::string::npos) << text;
+  EXPECT_NE(text.find("dry friction (Coulomb) in proportion to the load"), std::string::npos);
+
+  text.clear();
+  ASSERT_EQ(run("fit --json --effect " + at("found/proposal_1.json") + " " + sources, text), 0)
+      << text;
+  const auto fit = core::parse_json(text, "fit");
+  ASSERT_TRUE(fit) << text.substr(0, 300);
+  EXPECT_LT((*fit)["held_out_rmse"].get<double>(),
+            0.3 * (*json)["base"]["held_out_rmse"].get<double>());
+}
+
+TEST_F(LabAnswers, AFolderForProposalsThatIsNoneIsRefused) {
+  std::string text;
+  EXPECT_EQ(run("diagnose --write-proposals " + at("nowhere") + " --model " + at("model.json") +
+                    " --measurements " + at("set"),
+                text),
+            2);
+  EXPECT_NE(text.find("there is no such folder"), std::string::npos) << text;
 }
 
 TEST_F(LabAnswers, AFitHasTheFieldsThatAreWrittenDown) {

@@ -5,6 +5,7 @@
 
 #include "app/command.hpp"
 #include "app/lab_report.hpp"
+#include "core/json.hpp"
 #include "core/progress.hpp"
 #include "core/try.hpp"
 
@@ -12,19 +13,40 @@ namespace tractus {
 namespace commands {
 namespace {
 
+constexpr std::size_t kProposals = 5;  // written where their number is not given
+
 struct DiagnoseOptions : LabOptions {
-  std::filesystem::path out_model;
+  std::filesystem::path out_model, proposals;
+  std::size_t propose = 0;
 };
+
+/// One file for each term that is proposed, ready for --effect.
+core::Result<void> write_proposals(const lab_io::LabResult& answer,
+                                   const std::filesystem::path& folder) {
+  if (folder.empty() || !answer.discovery) return {};
+  for (const lab::Proposal& proposal : answer.discovery->proposals)
+    for (const lab::ProposedTerm& term : proposal.terms) {
+      const auto id = term.effect["id"].get<std::string>();
+      TRY(core::write_json(folder / (id.substr(id.find(':') + 1) + ".json"), term.effect));
+    }
+  return {};
+}
 
 Outcome run_diagnose(const DiagnoseOptions& options) {
   for (const auto& file : {options.report, options.out_model}) TRY(writable(file));
+  if (!options.proposals.empty() && !std::filesystem::is_directory(options.proposals))
+    return core::Error{core::Errc::bad_input,
+                       fmt::format("{}: there is no such folder", options.proposals.string())};
   const auto opened_case = TRY(opened(options));
-  lab_io::DiagnoseRequest wish{.options = {}, .report = !options.report.empty()};
+  lab_io::DiagnoseRequest wish{
+      .options = {}, .report = !options.report.empty(), .propose = options.propose};
+  if (!options.proposals.empty() && wish.propose == 0) wish.propose = kProposals;
   wish.options.threads = options.sources.threads;
   const auto bar = core::terminal_progress("trying effects");
   const auto answer = TRY(lab_io::diagnosed(opened_case, wish, bar));
   if (bar) bar(1.0);
   TRY(write_files(answer, options.out_model, options.report));
+  TRY(write_proposals(answer, options.proposals));
   fmt::print("{}", options.json ? answer.json.dump(2) + "\n" : printed_diagnosis(answer));
   return 0;
 }
@@ -43,6 +65,13 @@ Command diagnose_command() {
             add_own_option(app, *options);
             app.add_option("--out-model", options->out_model,
                            "file for the refitted model with the effects that were found");
+            app.add_option("--propose", options->propose,
+                           "also search for formulas that explain what no effect of the catalogue "
+                           "does, and propose so many at most")
+                ->check(CLI::Range(1, 20));
+            app.add_option("--write-proposals", options->proposals,
+                           "folder for the proposed formulas as user effects (tractus-effect/1), "
+                           "proposal_1.json and so on, to be added with --effect");
             return [options] { return run_diagnose(*options); };
           }};
 }

@@ -89,6 +89,10 @@ void print_states() {
     fmt::print("  {} ({} in {}):\n", rig, r.adds_to, r.unit);
     for (const auto& state : r.states)
       fmt::print("    {:12} {:6} {}\n", state.name, state.unit, state.meaning);
+    if (!r.remembers) continue;
+    fmt::print("    and what it remembers, by\n");
+    for (const auto& memory : tractus::effects::memory_operators())
+      fmt::print("      {}({})\n", memory.name, memory.arguments);
   }
 }
 

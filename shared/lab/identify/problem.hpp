@@ -1,6 +1,7 @@
 /// A rig's measurements held against a rig's model: all that the lab's engine knows of either.
 #pragma once
 
+#include "lab/identify/formula_terms.hpp"
 #include "lab/identify/parameter_space.hpp"
 #include "lab/identify/recorded_trials.hpp"
 #include "lab/identify/residual_model.hpp"
@@ -12,6 +13,8 @@ namespace tractus::lab {
 class Problem : public RecordedTrials, public ParameterSpace, public ResidualModel {
  public:
   virtual const SelectionThresholds& selection_thresholds() const = 0;
+  /// Null where no formulas are searched for.
+  virtual const FormulaTerms* formula_terms() const { return nullptr; }
 };
 
 }  // namespace tractus::lab

@@ -32,6 +32,9 @@ class UserEffects {
   const std::vector<std::pair<effects::EffectInstance, effects::EffectFacts>>& all() const {
     return effects_;
   }
+  void add(const UserEffects& more) {
+    effects_.insert(effects_.end(), more.effects_.begin(), more.effects_.end());
+  }
 
  private:
   std::vector<std::pair<effects::EffectInstance, effects::EffectFacts>> effects_;

@@ -114,9 +114,14 @@ LabResult compared(const Case& opened) {
 
 Result<LabResult> diagnosed(const Case& opened, const DiagnoseRequest& wish,
                             const core::Progress& progress) {
-  auto diagnosis = TRY(lab::diagnose(*opened.problem, wish.options,
-                                     part_of(progress, 0.0, wish.report ? 0.9 : 1.0)));
+  auto diagnosis =
+      TRY(lab::diagnose(*opened.problem, wish.options,
+                        part_of(progress, 0.0, wish.report || wish.propose ? 0.6 : 1.0)));
   LabResult out = begun(opened);
+  if (wish.propose > 0)
+    out.discovery = TRY(lab::discover(*opened.problem, diagnosis,
+                                      {.threads = wish.options.threads, .most = wish.propose},
+                                      part_of(progress, 0.6, 0.3)));
   if (auto edge = at_their_edge(diagnosis.final_fit); !edge.empty())
     diagnosis.notes.insert(diagnosis.notes.begin(), std::move(edge));
   if (auto blind = not_excited(diagnosis); !blind.empty())
@@ -131,6 +136,7 @@ Result<LabResult> diagnosed(const Case& opened, const DiagnoseRequest& wish,
   out.json["primary"] = primary;
   out.json["headline"] = headline;
   out.json["detail"] = detail;
+  if (out.discovery) out.json["discovery"] = lab::to_json(*out.discovery);
   out.model = opened.problem->model(diagnosis.final_fit.structure, diagnosis.final_fit.values);
   if (wish.report) {
     compare_given(opened, out);

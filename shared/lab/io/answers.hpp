@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/json.hpp"
+#include "lab/discover/discovery.hpp"
 #include "lab/identify/diagnosis.hpp"
 #include "lab/io/case.hpp"
 #include "lab/report/report.hpp"
@@ -13,9 +14,10 @@
 namespace tractus::lab_io {
 
 struct LabResult {
-  core::Json json;                  ///< as design and formats say
-  lab::ReportContent content;       ///< filled as far as it was asked for
-  std::optional<core::Json> model;  ///< the better model, as a model file
+  core::Json json;                          ///< as design and formats say
+  lab::ReportContent content;               ///< filled as far as it was asked for
+  std::optional<core::Json> model;          ///< the better model, as a model file
+  std::optional<lab::Discovery> discovery;  ///< where formulas were asked for
 };
 
 /// The model as it is given, beside the measurements.
@@ -23,7 +25,8 @@ LabResult compared(const Case& opened);
 
 struct DiagnoseRequest {
   lab::DiagnoseOptions options;
-  bool report = false;  ///< also compare before and after, for the page
+  bool report = false;      ///< also compare before and after, for the page
+  std::size_t propose = 0;  ///< formulas for what no catalogue explains, at most
 };
 /// Which effect is missing. Errors: those of lab::diagnose.
 core::Result<LabResult> diagnosed(const Case& opened, const DiagnoseRequest& wish,

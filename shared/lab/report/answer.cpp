@@ -227,6 +227,49 @@ Json to_json(const Diagnosis& d) {
   return out;
 }
 
+Json to_json(const Discovery& d) {
+  Json proposals = Json::array();
+  for (const Proposal& one : d.proposals) {
+    Json terms = Json::array();
+    for (const ProposedTerm& term : one.terms) {
+      Json numbers_of_term = Json::object();
+      for (const ProposedNumber& n : term.numbers)
+        numbers_of_term[n.name] = {{"value", number(n.value)},
+                                   {"unit", n.unit},
+                                   {"low", number(n.low)},
+                                   {"high", number(n.high)}};
+      terms.push_back({{"formula", term.formula},
+                       {"resembles", term.words},
+                       {"numbers", std::move(numbers_of_term)},
+                       {"effect", term.effect}});
+    }
+    proposals.push_back({{"formula", formula_text(one)},
+                         {"terms", std::move(terms)},
+                         {"beside", one.beside},
+                         {"rmse", number(one.rmse)},
+                         {"held_out_rmse", number(one.held_out_rmse)},
+                         {"probability", one.probability},
+                         {"stability", one.stability},
+                         {"trials_improved", one.trials_improved},
+                         {"size", one.size},
+                         {"passive", one.passive}});
+  }
+  Json out{{"proposals", std::move(proposals)},
+           {"formulas_tried", d.formulas_tried},
+           {"catalogue_probability", d.catalogue_probability},
+           {"unknown_probability", d.unknown_probability},
+           {"unknown", nullptr},
+           {"remark", d.remark}};
+  if (!d.unknown) return out;
+  Json knots = Json::array();
+  for (const auto& of_signal : d.unknown->knots) knots.push_back(numbers(of_signal));
+  out["unknown"] = {{"signals", d.unknown->signals},
+                    {"units", d.unknown->units},
+                    {"knots", std::move(knots)},
+                    {"force_N", numbers(d.unknown->force_N)}};
+  return out;
+}
+
 Json to_json(const Fit& fit, const Comparison& given) {
   return {{"format", "tractus-fit/1"},
           {"base", Json{{"rmse", number(given.rmse)}, {"noise_floor", number(given.noise_floor)}}},

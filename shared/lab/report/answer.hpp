@@ -4,6 +4,7 @@
 
 #include "core/json.hpp"
 #include "lab/compare/comparison.hpp"
+#include "lab/discover/discovery.hpp"
 #include "lab/identify/diagnosis.hpp"
 #include "lab/identify/fit.hpp"
 #include "lab/rigs/palpation/tract_map.hpp"
@@ -20,6 +21,7 @@ core::Json to_json(const Comparison& comparison);
 /// "steps":[{model, rmse, held_out_rmse}], "confounded":[[id, id]],
 /// "settle":{between, recording, expected_gain} or null, …}. A parameter of several components has
 /// arrays as value and sd.
+core::Json to_json(const Discovery& discovery);
 core::Json to_json(const Diagnosis& diagnosis);
 
 /// The "ranking" of a diagnosis by itself.

@@ -44,6 +44,7 @@ class ProbingParameterSpace {
   /// Layers that no recording entered, in words.
   const std::vector<std::string>& notes() const { return notes_; }
   const UserEffects& user_effects() const { return user_effects_; }
+  void add(const UserEffects& more) { user_effects_.add(more); }
 
  private:
   enum class Kind { stiffness, damping, equilibrium, start, end, delay, viscous, detent, pitch };
