@@ -256,9 +256,10 @@ Outcome run_carve(const CarveOptions& o) {
   const auto carved = cases::make(ct.volume, model, plan, core::terminal_progress("carving"));
   if (!carved) return about(o.volume, carved.error());
   if (o.certified && !carved->certificate->passes())
-    return about(o.volume, {Errc::out_of_range, carved->certificate->warning() +
-                                                    ": fill the bone (--preparation filled), move "
-                                                    "the tract, or leave out --certified"});
+    return about(o.volume,
+                 {Errc::out_of_range, carved->certificate->warning() +
+                                          "; move entry or target, fill the bone "
+                                          "(--preparation filled), or leave out --certified"});
   auto surroundings = cases::drilled_surroundings(ct.volume, *carved);
   if (!surroundings) return about(o.volume, surroundings.error());
   const auto key = TRY(key_of(o));
