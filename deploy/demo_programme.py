@@ -39,9 +39,12 @@ YEAR = [(350, "Autumn: four kinds of bone", "probing", 3), (285, "Winter: the wa
         (95, "Summer: the wall of the tract", "palpation", 1), (40, "Summer: four kinds of bone", "probing", 3),
         (12, "Autumn: a check before the holidays", "probing", 1)]
 OPEN = ("Before the examination: four kinds of bone", "probing", 1)  # due in two weeks, done by the fellows
-# The CT of the case that ships, a tract each with another wall gone; the station carves nothing of its own.
-CASES = {"L3 left pedicle, A": [], "L3 left pedicle, B": ["--breach", "lateral"], "L3 left pedicle, C": ["--breach", "inferior"],
-         "L3 left pedicle, whole": ["--no-channel"]}
+# The CT of the case that ships, a tract each with another wall gone, in filled bone in which every wall's breach can be felt, and one
+# to be drilled; the station carves nothing of its own.
+RIGHT = ["--entry", "2.5,200,-61.5", "--target", "10,158,-61.5", "--preparation", "filled", "--certified"]
+LEFT = ["--entry", "46,200,-61", "--target", "38.5,158,-61"]
+CASES = {"L3 right pedicle, A": RIGHT, "L3 right pedicle, B": [*RIGHT, "--breach", "lateral"],
+         "L3 right pedicle, C": [*RIGHT, "--breach", "inferior"], "L3 left pedicle, whole": [*LEFT, "--no-channel"]}
 DRILLER = "Simulated Abel"  # has drilled and felt already what his year has to
 STUDY = "recognition-2026"
 YEARS_OF_EXPERIENCE = [6, 3, 1, 0.5, 0.1, 0]
@@ -161,10 +164,10 @@ class Programme:
 
     def cases(self):
         self.case_ids = []
-        for number, (title, breach) in enumerate(CASES.items()):
+        for number, (title, options) in enumerate(CASES.items()):
             out = self.home / f"demo-case-{number}"
             if not out.exists():
-                self.run("tractus", "carve", "--volume", self.volume, "--entry", "46,200,-61", "--target", "38.5,158,-61", *breach,
+                self.run("tractus", "carve", "--volume", self.volume, *options,
                          "--title", title, "--source", "TPTBox sample CT, Apache-2.0 (tests/data/SOURCES.md)", "--key", self.key,
                          "--out", out)
             self.run("tractus-server", "publish", "--data", self.home / "server", out)

@@ -3,6 +3,7 @@
 #include <chrono>
 
 #include "cases/case.hpp"
+#include "cases/making.hpp"
 #include "core/clock.hpp"
 #include "core/file.hpp"
 #include "core/try.hpp"
@@ -68,7 +69,7 @@ class Noting {
 };
 
 cases::NewCase new_case(const store::CaseMaking& making, const SourceVolume& source,
-                        const models::PalpationModel& model, const cases::Carved& carved) {
+                        const models::PalpationModel& model, const cases::Made& carved) {
   cases::NewCase out{.definition = {},
                      .truth = carved.truth(),
                      .volume = carved.volume,
@@ -80,6 +81,9 @@ cases::NewCase new_case(const store::CaseMaking& making, const SourceVolume& sou
   out.definition.made_utc_us = core::utc_us();
   out.definition.tract = carved.tract;
   out.definition.planned = !carved.drilled;
+  out.definition.preparation =
+      carved.envelope ? volume::Preparation::filled : volume::Preparation::published;
+  out.certificate = carved.certificate;
   out.definition.model = model;
   return out;
 }
@@ -97,6 +101,7 @@ Result<cases::CarvingPlan> plan_from(core::Fields& fields) {
       fields.wrong("channel", "drilled or planned is expected");
     out.drilled = channel != "planned";
   }
+  out.preparation = fields.word_or("preparation", out.preparation);
   const Json* breach = fields.member("breach", false);
   if (!breach || breach->is_null()) return out;
   if (!out.drilled)
@@ -112,6 +117,7 @@ Json plan_json(const cases::CarvingPlan& plan) {
            {"target_m", numbers(plan.target_m)},
            {"radius_m", plan.radius_m},
            {"channel", plan.drilled ? "drilled" : "planned"},
+           {"preparation", volume::name(plan.preparation)},
            {"breach", Json()}};
   if (!plan.breach) return out;
   out["breach"] = {{"wall", volume::name(plan.breach->wall)}, {"depth_m", plan.breach->depth_m}};
@@ -135,8 +141,8 @@ Result<void> make_case(store::Store& store, const store::Objects& objects, const
                                  noting.at("reading the volume", 0.0, kCarving)));
   models::PalpationModel model;
   model.name = "uniform cantilever";
-  const auto carved = TRY(
-      cases::carve(ct, model.transfer, plan, noting.at("drilling the tract", kCarving, kWriting)));
+  const auto carved =
+      TRY(cases::make(ct, model, plan, noting.at("drilling the tract", kCarving, kWriting)));
   auto scratch =
       TRY(core::ScratchFolder::make(std::filesystem::temp_directory_path() / "tractus-case"));
   const auto bundle = scratch.path() / "case";

@@ -26,6 +26,7 @@ constexpr const char* kManifest = "case.json";
 constexpr const char* kSignature = "case.sig";
 constexpr std::uint64_t kMaxManifest_bytes = 1u << 20;
 constexpr std::size_t kTruth_bytes = 1024;
+constexpr std::size_t kCertificate_bytes = 16384;
 constexpr std::size_t kPictureStep_bytes = 1u << 19;
 constexpr std::size_t kRead_bytes = 1u << 20;
 
@@ -107,12 +108,18 @@ Result<void> check_nothing_else(const fs::path& folder, const std::vector<Part>&
   return {};
 }
 
-/// Writes a truth padded with blanks to one length for all, since the open manifest states it.
-Result<void> write_truth(const fs::path& folder, const Truth& truth) {
-  std::string text = truth.to_json().dump(2);
-  core::require(text.size() < kTruth_bytes, "a truth fits its length");
-  text.resize(kTruth_bytes - 1, ' ');
-  return core::write_file(folder / kTruthPart, core::bytes_of(text + "\n"));
+/// Writes a secret padded with blanks to one length for all, since the open manifest states it.
+Result<void> write_padded(const fs::path& path, const Json& json, std::size_t bytes) {
+  std::string text = json.dump(2);
+  core::require(text.size() < bytes, "a secret part fits its length");
+  text.resize(bytes - 1, ' ');
+  return core::write_file(path, core::bytes_of(text + "\n"));
+}
+
+Result<void> write_certificate(const fs::path& folder, const Certificate& certificate) {
+  Json json = certificate.to_json();
+  json["salt"] = core::hex(core::random_bytes(32));
+  return write_padded(folder / kCertificatePart, json, kCertificate_bytes);
 }
 
 /// Zeros after the salt bring pictures of much the same size to the same.
@@ -130,16 +137,33 @@ Result<void> write_picture(const fs::path& folder, const NewCase& made) {
 Result<std::vector<Part>> write_parts(const fs::path& folder, const NewCase& made,
                                       const core::Progress& progress) {
   TRY(volume::write_volume(folder / kVolumePart, made.volume, made.meta, progress));
-  TRY(write_truth(folder, made.truth));
-  if (made.draw) TRY(write_picture(folder, made));
+  TRY(write_padded(folder / kTruthPart, made.truth.to_json(), kTruth_bytes));
+  std::vector<std::pair<const char*, bool>> names{{kVolumePart, false}, {kTruthPart, true}};
+  if (made.draw) {
+    TRY(write_picture(folder, made));
+    names.emplace_back(kPicturePart, true);
+  }
+  if (made.certificate) {
+    TRY(write_certificate(folder, *made.certificate));
+    names.emplace_back(kCertificatePart, true);
+  }
   std::vector<Part> parts;
-  for (const auto& [name, secret] : {std::pair(kVolumePart, false), std::pair(kTruthPart, true),
-                                     std::pair(kPicturePart, true)}) {
-    if (name == std::string_view(kPicturePart) && !made.draw) continue;
+  for (const auto& [name, secret] : names) {
     auto part = TRY(measured(folder / name, secret));
     parts.push_back(std::move(part));
   }
   return parts;
+}
+
+/// A secret part that is JSON, checked against the manifest.
+Result<Json> read_secret(const OpenedCase& opened, const char* name) {
+  const fs::path path = opened.folder / name;
+  const auto bytes = TRY(core::read_file(path, kMaxManifest_bytes));
+  const auto& parts = opened.definition.parts;
+  const auto part = std::ranges::find(parts, name, &Part::name);
+  if (part == parts.end() || part->sha256 != core::sha256(bytes))
+    return corrupt(path, "its content is not what the case says (SHA-256)");
+  return core::parse_json(core::text_of(bytes), path.string());
 }
 
 }  // namespace
@@ -151,6 +175,7 @@ Result<OpenedCase> write_case(const fs::path& folder, NewCase made, const core::
                                              folder.string())};
   auto scratch = TRY(core::ScratchFolder::make(folder));
   made.truth.salt_hex = core::hex(core::random_bytes(32));
+  if (made.certificate) made.definition.certified = made.certificate->passes();
   auto parts = TRY(write_parts(scratch.path(), made, progress));
   made.definition.parts = std::move(parts);
   const std::string manifest = made.definition.to_json().dump(2) + "\n";
@@ -175,14 +200,12 @@ Result<OpenedCase> open_case(const fs::path& folder) {
 }
 
 Result<Truth> read_truth(const OpenedCase& opened) {
-  const fs::path path = opened.folder / kTruthPart;
-  auto bytes = TRY(core::read_file(path, kMaxManifest_bytes));
-  const auto& parts = opened.definition.parts;
-  const auto part = std::ranges::find(parts, kTruthPart, &Part::name);
-  if (part == parts.end() || part->sha256 != core::sha256(bytes))
-    return corrupt(path, "its content is not what the case says (SHA-256)");
-  auto json = TRY(core::parse_json(core::text_of(bytes), path.string()));
-  return Truth::from_json(json, path.string() + ": ");
+  const auto json = TRY(read_secret(opened, kTruthPart));
+  return Truth::from_json(json, (opened.folder / kTruthPart).string() + ": ");
+}
+
+Result<Json> read_certificate(const OpenedCase& opened) {
+  return read_secret(opened, kCertificatePart);
 }
 
 }  // namespace cases

@@ -18,8 +18,9 @@ using math::Vec3;
 
 constexpr double kLongest_m = 0.2, kWidest_m = 0.01, kThinnest_m = 0.0002;
 constexpr double kSurroundings_m = 0.040, kSurroundingsSpacing_m = 0.0005;
-constexpr double kFarthestMidline_m = 0.1;  // a pedicle is some 10 to 30 mm from it
-constexpr double kOpenAir_m = 0.002;        // the channel goes on for so much behind the bone
+constexpr double kFarthestMidline_m = 0.1;   // a pedicle is some 10 to 30 mm from it
+constexpr double kFarBehindFront_m = 0.004;  // a tract that ends farther back has no anterior wall
+constexpr double kOpenAir_m = 0.002;         // the channel goes on for so much behind the bone
 
 std::string mm(const Vec3& p_m) {
   return fmt::format("({:.1f}, {:.1f}, {:.1f}) mm", p_m.x() * 1e3, p_m.y() * 1e3, p_m.z() * 1e3);
@@ -86,10 +87,58 @@ core::Result<volume::Tract> tract_of(const volume::Volume& ct,
   return tract;
 }
 
-volume::Box region_of(const volume::Geometry& geometry, const Carved& carved, double margin_m) {
-  std::vector<Vec3> points{carved.tract.entry_m, carved.tract.end_m()};
-  if (carved.breach) points.push_back(carved.breach->tip_m);
+/// The envelope of filled bone about a tract, which must lie in it beyond its first third.
+core::Result<std::shared_ptr<const volume::Envelope>> envelope_of(const volume::Volume& ct,
+                                                                  const CarvingPlan& plan,
+                                                                  const volume::Tract& tract) {
+  std::shared_ptr<const volume::Envelope> envelope = plan.envelope;
+  if (!envelope) envelope = TRY(volume::envelope_about(ct, tract));
+  for (const double share : {0.4, 0.6, 0.8}) {
+    const double depth_m = share * tract.length_m;
+    if (envelope->share(tract.entry_m + depth_m * tract.axis) < 0.5)
+      return Error{Errc::out_of_range,
+                   fmt::format("the tract leaves the vertebra's envelope at depth {:.1f} mm: move "
+                               "entry or target, or give the envelope",
+                               depth_m * 1e3)};
+  }
+  return envelope;
+}
+
+/// The tract's length in filled bone, where none is asked for: to shortly before the anterior face.
+double length_to_front_m(const volume::WallFinder& finder, const volume::Tract& tract) {
+  const auto front = finder.wall_at(tract, volume::Wall::anterior, tract.length_m);
+  return front ? tract.length_m + front->outer_m - kBehindFront_m : tract.length_m;
+}
+
+volume::Box region_of(const volume::Geometry& geometry, const Placed& placed, double margin_m) {
+  std::vector<Vec3> points{placed.tract.entry_m, placed.tract.end_m()};
+  if (placed.breach) points.push_back(placed.breach->tip_m);
   return volume::box_about(geometry, points, margin_m);
+}
+
+/// Adds what the walls of the prepared bone say: mouth, walls, breach.
+core::Result<Placed> with_walls(const volume::Volume& bone,
+                                const volume::TransferFunction& transfer, const CarvingPlan& plan,
+                                Placed placed) {
+  const volume::WallFinder finder(bone, transfer);
+  placed.mouth_m = finder.behind_entry_m(placed.tract) + kOpenAir_m;
+  for (const auto wall : volume::kWalls)
+    placed.walls.push_back(finder.thinnest(placed.tract, wall));
+  if (plan.breach)
+    placed.breach = TRY(volume::place_breach(bone, transfer, placed.tract, *plan.breach));
+  return placed;
+}
+
+/// An anterior breach is felt by taps at the end: its wall must be there.
+core::Result<void> check_front(const Placed& placed) {
+  if (!placed.breach || placed.breach->wall.wall != volume::Wall::anterior) return {};
+  const double behind_m = placed.breach->wall.outer_m;
+  if (behind_m <= kFarBehindFront_m) return {};
+  return Error{Errc::out_of_range,
+               fmt::format("anterior: the tract ends {:.1f} mm behind the bone's anterior face, at "
+                           "most {:g} mm are allowed: give a length of {:.1f} mm, or none",
+                           behind_m * 1e3, kFarBehindFront_m * 1e3,
+                           (placed.tract.length_m + behind_m - kBehindFront_m) * 1e3)};
 }
 
 /// Beyond the tract's ends, along x, y and z of V: the halves of the vertebra are compared up to 71
@@ -142,25 +191,50 @@ core::Result<Placed> place(const volume::Volume& ct, const volume::TransferFunct
   const auto empty = TRY(volume::empty_value(ct, transfer));
   const auto midline = TRY(midline_of(ct, transfer, plan));
   const auto tract = TRY(tract_of(ct, transfer, plan, length_m, midline));
-  const volume::WallFinder finder(ct, transfer);
-  Placed placed{
-      .tract = tract, .midline = midline, .empty_value = empty, .breach = {}, .walls = {}};
+  Placed placed{.tract = tract,
+                .midline = midline,
+                .empty_value = empty,
+                .breach = {},
+                .envelope = {},
+                .walls = {}};
   placed.drilled = plan.drilled;
-  placed.mouth_m = finder.behind_entry_m(tract) + kOpenAir_m;
-  for (const auto wall : volume::kWalls) placed.walls.push_back(finder.thinnest(tract, wall));
-  if (!plan.breach) return placed;
-  auto breach = TRY(volume::place_breach(ct, transfer, tract, *plan.breach));
-  placed.breach = breach;
+  if (plan.preparation == volume::Preparation::published)
+    return with_walls(ct, transfer, plan, std::move(placed));
+  placed.envelope = TRY(envelope_of(ct, plan, tract));
+  const auto bone = TRY(prepared_ct(ct, transfer, placed));
+  if (!plan.length_m)
+    placed.tract.length_m = length_to_front_m(volume::WallFinder(bone, transfer), tract);
+  placed = TRY(with_walls(bone, transfer, plan, std::move(placed)));
+  TRY(check_front(placed));
   return placed;
+}
+
+core::Result<volume::Volume> prepared_ct(const volume::Volume& ct,
+                                         const volume::TransferFunction& transfer,
+                                         const Placed& placed) {
+  const auto& tract = placed.tract;
+  const auto box = TRY(box_that_matters(ct.geometry, tract.entry_m, tract.end_m()));
+  auto part = TRY(volume::resample_finer(ct, box, ct.geometry.spacing_m.maxCoeff()));
+  if (placed.envelope)
+    TRY(volume::Filling::make(transfer)).fill(part, *placed.envelope, placed.tract);
+  return part;
+}
+
+core::Result<volume::Volume> bone_about(const volume::Volume& ct,
+                                        const volume::TransferFunction& transfer,
+                                        const CarvingPlan& plan, const Placed& placed,
+                                        const core::Progress& progress) {
+  auto part = TRY(volume::resample_finer(ct, region_of(ct.geometry, placed, plan.margin_m),
+                                         plan.spacing_m, progress));
+  if (placed.envelope)
+    TRY(volume::Filling::make(transfer)).fill(part, *placed.envelope, placed.tract);
+  return part;
 }
 
 core::Result<Carved> carve(const volume::Volume& ct, const volume::TransferFunction& transfer,
                            const CarvingPlan& plan, const core::Progress& progress) {
-  auto placed = TRY(place(ct, transfer, plan));
-  Carved carved{std::move(placed), {}};
-  auto part = TRY(volume::resample_finer(ct, region_of(ct.geometry, carved, plan.margin_m),
-                                         plan.spacing_m, progress));
-  carved.volume = std::move(part);
+  Carved carved{TRY(place(ct, transfer, plan)), {}};
+  carved.volume = TRY(bone_about(ct, transfer, plan, carved, progress));
   if (carved.drilled)
     volume::drill(carved.volume, carved.tract, carved.mouth_m, carved.breach, carved.empty_value);
   return carved;

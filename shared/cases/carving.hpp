@@ -3,11 +3,13 @@
 #pragma once
 
 #include <array>
+#include <memory>
 #include <optional>
 
 #include "cases/case.hpp"
 #include "volume/anatomy.hpp"
 #include "volume/carve.hpp"
+#include "volume/fill.hpp"
 
 namespace tractus::cases {
 
@@ -15,14 +17,23 @@ namespace tractus::cases {
 struct CarvingPlan {
   math::Vec3 entry_m = math::Vec3::Zero();
   math::Vec3 target_m = math::Vec3::Zero();
-  std::optional<double> length_m = {};  ///< to the target if not given
-  double radius_m = 0.0015;             ///< the 3 mm drill of [Zoller2020]
+  /// If not given: to the target; in filled bone to kBehindFront_m before its anterior face, so
+  /// that every wall's breach goes with one length and the length tells nothing.
+  std::optional<double> length_m = {};
+  double radius_m = 0.0015;  ///< the 3 mm drill of [Zoller2020]
   std::optional<volume::BreachPlan> breach = {};
   std::optional<double> midline_x_m = {};  ///< stated by a person; estimated if not given
   double spacing_m = 0.00035;              ///< of the drilled volume, where the CT is coarser
   double margin_m = 0.020;                 ///< of the drilled volume about tract and breach
   bool drilled = true;  ///< else the tract is a plan: the bone stays whole, and has no breach
+  volume::Preparation preparation = volume::Preparation::published;
+  /// Of filled bone; found in the CT (volume::envelope_about) if not given.
+  std::shared_ptr<const volume::Envelope> envelope = {};
 };
+
+/// Where a tract ends behind the anterior face of filled bone: its cortex, some 0.5 to 1 mm, and at
+/// most 2 mm behind that, so that a tap reaches it.
+inline constexpr double kBehindFront_m = 0.0025;
 
 /// Where tract, walls and breach come to lie, before anything is drilled.
 struct Placed {
@@ -32,6 +43,7 @@ struct Placed {
   double mouth_m = 0.0;      ///< how far behind the entry the channel was opened
   double empty_value = 0.0;  ///< CT value of what was removed
   std::optional<volume::Breach> breach;
+  std::shared_ptr<const volume::Envelope> envelope;  ///< none of published bone
   /// In the order of volume::kWalls, before the drill: where each wall is thinnest, or why that is
   /// not known.
   std::vector<core::Result<volume::WallFound>> walls;
@@ -55,6 +67,18 @@ core::Result<volume::Box> box_that_matters(const volume::Geometry& geometry,
 /// numbers that are none; those of midline_about, tract_between and place_breach).
 core::Result<Placed> place(const volume::Volume& ct, const volume::TransferFunction& transfer,
                            const CarvingPlan& plan);
+
+/// The CT about a tract at its own spacing, prepared: what `place` finds walls in. Errors:
+/// out_of_range (Filling).
+core::Result<volume::Volume> prepared_ct(const volume::Volume& ct,
+                                         const volume::TransferFunction& transfer,
+                                         const Placed& placed);
+/// The bone about what was placed on its finer grid, prepared, before the drill. Errors: too_large,
+/// cancelled, out_of_range (Filling).
+core::Result<volume::Volume> bone_about(const volume::Volume& ct,
+                                        const volume::TransferFunction& transfer,
+                                        const CarvingPlan& plan, const Placed& placed,
+                                        const core::Progress& progress = {});
 
 /// Places it, cuts the part about the tract out on a finer grid and drills it (or does not:
 /// CarvingPlan::drilled). Errors: those of

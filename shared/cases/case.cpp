@@ -138,6 +138,9 @@ Json Case::to_json() const {
                {"model", model.to_json()},
                {"parts", std::move(list)}};
   if (planned) json["channel"] = kPlanned;
+  if (preparation != volume::Preparation::published)
+    json["preparation"] = volume::name(preparation);
+  if (certified) json["certified"] = *certified;
   return json;
 }
 
@@ -153,6 +156,13 @@ core::Result<Case> Case::from_json(const Json& json, const std::string& where) {
   made.planned = fields.has("channel");
   if (made.planned && fields.text("channel") != kPlanned)
     fields.wrong("channel", "\"planned\" is expected, or no such field: then it is drilled");
+  made.preparation = fields.word_or("preparation", volume::Preparation::published);
+  if (const Json* certified = fields.member("certified", false)) {
+    if (certified->is_boolean())
+      made.certified = certified->get<bool>();
+    else
+      fields.wrong("certified", "true or false is expected");
+  }
   TRY(fields.done());
   auto tract_read = TRY(read_tract(*tract, where + "/tract"));
   auto model_read = TRY(models::PalpationModel::from_json(*model, where + "/model"));

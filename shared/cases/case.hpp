@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "cases/certificate.hpp"
 #include "core/json.hpp"
 #include "core/signing.hpp"
 #include "models/model.hpp"
@@ -19,10 +20,11 @@ namespace tractus::cases {
 inline constexpr const char* kVolumePart = "volume.tvol";
 inline constexpr const char* kTruthPart = "truth.json";
 inline constexpr const char* kPicturePart = "picture.png";
+inline constexpr const char* kCertificatePart = "certificate.json";
 
 /// A file of the bundle, named by its content.
 struct Part {
-  std::string name;  ///< "volume.tvol", "truth.json", "picture.png"
+  std::string name;  ///< "volume.tvol", "truth.json", "picture.png", "certificate.json"
   std::string sha256;
   std::uint64_t size_bytes = 0;
   bool secret = false;  ///< never leaves the server for a station or a trainee
@@ -37,6 +39,10 @@ struct Case {
   std::int64_t made_utc_us = 0;
   volume::Tract tract = {};
   bool planned = false;  ///< the tract is a plan alone: the bone is whole, a channel is to be made
+  volume::Preparation preparation = volume::Preparation::published;  ///< of the volume's bone
+  /// Whether an ideal observer can tell a breach of every wall; nothing for a case that was made
+  /// without being tried.
+  std::optional<bool> certified = {};
   models::PalpationModel model = {};  ///< probe, transfer function, factors
   std::vector<Part> parts =
       {};  ///< the volume open, the truth secret, the picture (it shows the breach) secret
@@ -67,7 +73,8 @@ struct OpenedCase {
   std::filesystem::path folder;
 };
 
-/// What a bundle is made of. `definition.parts` and `truth.salt_hex` are filled by `write_case`.
+/// What a bundle is made of. `definition.parts`, `definition.certified` and `truth.salt_hex` are
+/// filled by `write_case`.
 struct NewCase {
   Case definition;
   Truth truth;
@@ -75,6 +82,7 @@ struct NewCase {
   volume::VolumeMeta meta;
   /// Draws the picture into a file; may be empty: then the bundle has none.
   std::function<core::Result<void>(const std::filesystem::path&)> draw;
+  std::optional<Certificate> certificate = {};  ///< a secret part: it shows where the breach is
 };
 
 /// Makes the bundle whole or not at all. Errors: conflict (`folder` is there already), io,
@@ -91,5 +99,8 @@ core::Result<OpenedCase> open_case(const std::filesystem::path& folder);
 /// The truth of an opened case, checked against the manifest again. Errors: not_found where the
 /// bundle has none.
 core::Result<Truth> read_truth(const OpenedCase& opened);
+/// The certificate of an opened case as JSON (cases::Certificate), checked in the same way. Errors:
+/// not_found where the bundle has none.
+core::Result<core::Json> read_certificate(const OpenedCase& opened);
 
 }  // namespace tractus::cases

@@ -126,6 +126,10 @@ std::vector<schema::Field> plan_fields() {
            optional(one_of({"drilled", "planned"},
                            "drilled (default): the channel is drilled into the volume; planned: "
                            "the bone stays whole, and a trainee drills the channel"))},
+          {"preparation",
+           optional(one_of<volume::Preparation>(
+               "published (default): the CT's own values, marrow is not felt; filled: all bone "
+               "within the vertebra's envelope is felt"))},
           {"breach", optional(nullable(ref("BreachWish")))}};
 }
 

@@ -66,11 +66,18 @@ Json tract_json(const volume::Volume& ct, const volume::TransferFunction& transf
   out["problems"] = Json::array();
   out["side"] = placed->left_side() ? "left" : "right";
   out["tract"] = tract_of(placed->tract);
-  const volume::WallFinder finder(ct, transfer);
+  std::optional<volume::Volume> filled;
+  if (placed->envelope) {
+    auto prepared = cases::prepared_ct(ct, transfer, *placed);
+    if (!prepared) return no_tract_json(plan, prepared.error().what);
+    filled = std::move(*prepared);
+  }
+  const volume::Volume& bone = filled ? *filled : ct;
+  const volume::WallFinder finder(bone, transfer);
   for (std::size_t k = 0; k < volume::kWalls.size(); ++k)
     out["walls"].push_back(wall_json(finder, placed->tract, volume::kWalls[k], placed->walls[k]));
   if (!asked) return out;
-  const auto breach = volume::place_breach(ct, transfer, placed->tract, *asked);
+  const auto breach = volume::place_breach(bone, transfer, placed->tract, *asked);
   if (breach)
     out["breach"] = breach_json(*breach);
   else

@@ -9,7 +9,7 @@
 #include "app/case_picture.hpp"
 #include "app/command.hpp"
 #include "app/lengths.hpp"
-#include "cases/carving.hpp"
+#include "cases/making.hpp"
 #include "core/clock.hpp"
 #include "core/file.hpp"
 #include "core/try.hpp"
@@ -27,7 +27,9 @@ struct CarveOptions {
   std::string volume, out, title, source, model, key, png;
   std::string entry, target, length, radius = "1.5", midline;
   std::string breach, breach_depth, breach_at, spacing = "0.35", margin = "20";
-  bool no_channel = false;
+  std::string preparation = "published", envelope;
+  int envelope_label = 1;
+  bool no_channel = false, certified = false;
   bool json = false;
 };
 
@@ -59,6 +61,23 @@ core::Result<void> read_breach(const CarveOptions& o, cases::CarvingPlan& plan) 
   return read_length(o.breach_at, "--breach-at", plan.breach->at_m);
 }
 
+core::Result<void> read_preparation(const CarveOptions& o, cases::CarvingPlan& plan) {
+  const auto preparation = core::from_name<volume::Preparation>(o.preparation);
+  if (!preparation)
+    return Error{Errc::bad_input,
+                 fmt::format("--preparation: '{}': one of {} is expected", o.preparation,
+                             core::names_listed<volume::Preparation>())};
+  plan.preparation = *preparation;
+  if (o.envelope.empty()) return {};
+  if (plan.preparation == volume::Preparation::published)
+    return Error{Errc::bad_input, "--envelope: needs --preparation filled"};
+  const auto labels = TRY(volume_io::read_volume(o.envelope));
+  auto envelope = volume::envelope_of_labels(labels.volume, o.envelope_label);
+  if (!envelope) return Error{envelope.error().code, o.envelope + ": " + envelope.error().what};
+  plan.envelope = std::move(*envelope);
+  return {};
+}
+
 core::Result<cases::CarvingPlan> plan_of(const CarveOptions& o) {
   cases::CarvingPlan plan;
   plan.entry_m = TRY(point_m(o.entry, "--entry"));
@@ -69,7 +88,10 @@ core::Result<cases::CarvingPlan> plan_of(const CarveOptions& o) {
   TRY(read_length(o.spacing, "--spacing", plan.spacing_m));
   TRY(read_length(o.margin, "--margin", plan.margin_m));
   TRY(read_breach(o, plan));
+  TRY(read_preparation(o, plan));
   plan.drilled = !o.no_channel;
+  if (o.certified && o.no_channel)
+    return Error{Errc::bad_input, "--certified: a planned channel has no walls to feel"};
   return plan;
 }
 
@@ -100,7 +122,7 @@ Json wall_json(volume::Wall wall, const core::Result<volume::WallFound>& found) 
           {"at_m", found->at_m}};
 }
 
-Json report_of(const cases::OpenedCase& made, const cases::Carved& carved) {
+Json report_of(const cases::OpenedCase& made, const cases::Made& carved) {
   const auto& grid = carved.volume.geometry;
   Json out = {
       {"case", made.id},
@@ -115,7 +137,9 @@ Json report_of(const cases::OpenedCase& made, const cases::Carved& carved) {
       {"volume", {{"dims", grid.dims}, {"spacing_m", json_of(grid.spacing_m)}}},
       {"empty_value", carved.empty_value},
       {"walls", Json::array()},
-      {"breach", Json()}};
+      {"breach", Json()},
+      {"preparation", volume::name(made.definition.preparation)},
+      {"certificate", carved.certificate ? carved.certificate->to_json() : Json()}};
   out["midline"]["symmetry"] = carved.midline.symmetry ? Json(*carved.midline.symmetry) : Json();
   for (std::size_t k = 0; k < carved.walls.size(); ++k)
     out["walls"].push_back(wall_json(volume::kWalls[k], carved.walls[k]));
@@ -129,7 +153,21 @@ Json report_of(const cases::OpenedCase& made, const cases::Carved& carved) {
   return out;
 }
 
-void print_text(const cases::OpenedCase& made, const cases::Carved& carved) {
+void print_certificate(const cases::Certificate& certificate) {
+  for (const auto& wall : certificate.walls) {
+    const auto d = wall.d_prime();
+    if (!d) {
+      fmt::print("{:>9} breach: {}\n", volume::name(wall.wall), wall.why_not);
+      continue;
+    }
+    fmt::print("{:>9} breach at depth {:.1f} mm: d′ {:.1f}{}, {}\n", volume::name(wall.wall),
+               *wall.at_m * 1e3, *d,
+               wall.told.fa ? fmt::format(", worst whole place {:.1f}", *wall.told.fa) : "",
+               wall.passes() ? "can be told" : "CANNOT be told by feel");
+  }
+}
+
+void print_text(const cases::OpenedCase& made, const cases::Made& carved) {
   const auto& grid = carved.volume.geometry;
   const auto& midline = carved.midline;
   fmt::print(
@@ -153,6 +191,7 @@ void print_text(const cases::OpenedCase& made, const cases::Carved& carved) {
     fmt::print("{} breach at depth {:.1f} mm, through {:.1f} mm of bone and {:.1f} mm beyond\n",
                volume::name(breach->wall.wall), breach->wall.at_m * 1e3,
                breach->wall.thickness_m() * 1e3, breach->depth_m * 1e3);
+  if (carved.certificate) print_certificate(*carved.certificate);
   if (!carved.drilled) fmt::print("the bone is whole: the tract is planned and not drilled\n");
   fmt::print(
       "{} x {} x {} voxels of {:.3g} x {:.3g} x {:.3g} mm; removed bone has the CT value {:g}\n",
@@ -161,7 +200,7 @@ void print_text(const cases::OpenedCase& made, const cases::Carved& carved) {
   fmt::print("{}  {}\n", made.id, made.folder.string());
 }
 
-cases::NewCase case_of(const CarveOptions& o, const cases::Carved& carved,
+cases::NewCase case_of(const CarveOptions& o, const cases::Made& carved,
                        const models::PalpationModel& model, const std::string& source,
                        volume::Volume surroundings) {
   cases::NewCase made{
@@ -174,6 +213,9 @@ cases::NewCase case_of(const CarveOptions& o, const cases::Carved& carved,
   made.definition.made_utc_us = core::utc_us();
   made.definition.tract = carved.tract;
   made.definition.planned = !carved.drilled;
+  made.definition.preparation =
+      carved.envelope ? volume::Preparation::filled : volume::Preparation::published;
+  made.certificate = carved.certificate;
   made.definition.model = model;
   made.definition.model.volume.clear();
   made.meta = {source, carved.drilled ? "part about a tract, drilled"
@@ -191,7 +233,7 @@ Error about(const std::string& file, const Error& error) {
 
 /// The picture of its own goes away again if the case cannot be written.
 Outcome write(const CarveOptions& o, cases::NewCase definition, const core::KeyPair& key,
-              const cases::Carved& carved) {
+              const cases::Made& carved) {
   if (!o.png.empty()) TRY(definition.draw(o.png));
   const auto made =
       cases::write_case(o.out, std::move(definition), key, core::terminal_progress("writing"));
@@ -211,9 +253,13 @@ Outcome run_carve(const CarveOptions& o) {
     return Error{Errc::conflict,
                  fmt::format("{}: exists already; remove it or choose another name", o.out)};
   const auto ct = TRY(volume_io::read_volume(o.volume, core::terminal_progress("reading")));
-  const auto carved =
-      cases::carve(ct.volume, model.transfer, plan, core::terminal_progress("carving"));
+  const auto carved = cases::make(ct.volume, model, plan, core::terminal_progress("carving"));
   if (!carved) return about(o.volume, carved.error());
+  if (o.certified && !carved->certificate->passes())
+    return about(o.volume,
+                 {Errc::out_of_range, carved->certificate->warning() +
+                                          "; move entry or target, fill the bone "
+                                          "(--preparation filled), or leave out --certified"});
   auto surroundings = cases::drilled_surroundings(ct.volume, *carved);
   if (!surroundings) return about(o.volume, surroundings.error());
   const auto key = TRY(key_of(o));
@@ -254,6 +300,16 @@ void add_options(CLI::App& app, CarveOptions& o) {
   app.add_option("--margin", o.margin, "margin of the volume around the tract, in mm (default 20)");
   app.add_option("--model", o.model,
                  "model file with probe and transfer function (default: the published model)");
+  app.add_option("--preparation", o.preparation,
+                 "how the bone is prepared before it is drilled: published (as in the paper: "
+                 "marrow is not felt) or filled (all bone within the vertebra's envelope is felt); "
+                 "default published");
+  app.add_option("--envelope", o.envelope,
+                 "label map of the vertebra from another program, with --preparation filled "
+                 "(default: the envelope is found in the CT)");
+  app.add_option("--envelope-label", o.envelope_label, "label of the vertebra in it (default 1)");
+  app.add_flag("--certified", o.certified,
+               "refuse a case in which a breach of some wall could not be told by feel");
   app.add_option("--out", o.out, "folder of the case; it must not exist")->required();
   app.add_option("--title", o.title, "title of the case");
   app.add_option("--source", o.source,

@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "app/command.hpp"
+#include "cases/making.hpp"
 #include "core/clock.hpp"
 #include "core/try.hpp"
 
@@ -66,12 +67,60 @@ Outcome show(const CaseOptions& o) {
       "wide\n",
       entry.x(), entry.y(), entry.z(), end.x(), end.y(), end.z(), tract.length_m * 1e3,
       tract.radius_m * 2e3);
+  fmt::print("bone    {}, {}\n", volume::name(made.preparation),
+             !made.certified   ? "not certified"
+             : *made.certified ? "every wall's breach can be felt"
+                               : "NOT every wall's breach can be felt");
   fmt::print("model   {}, {} points on {:.0f} mm\n", made.model.name, made.model.base.points,
              made.model.base.length_m * 1e3);
   for (const auto& part : made.parts)
     fmt::print("part    {:<12} {:>10} bytes  {:.12}…  {}\n", part.name, part.size_bytes,
                part.sha256, state_of(opened, part));
   return 0;
+}
+
+/// The certificate that the case was made with, or what can be said of a case that has none.
+core::Result<Json> certificate_of(const cases::OpenedCase& opened) {
+  if (opened.definition.certified) return cases::read_certificate(opened);
+  const auto truth = TRY(cases::read_truth(opened));
+  if (!truth.breached)
+    return core::Error{core::Errc::not_found,
+                       "this case was made without a certificate and has no breach to try: make "
+                       "it anew from its CT"};
+  const auto file = TRY(volume::VolumeFile::open(opened.folder / cases::kVolumePart));
+  const auto drilled = TRY(file.read_all());
+  const auto& made = opened.definition;
+  const auto wall = TRY(cases::certify_drilled(drilled, made.model, made.tract, *truth.breached,
+                                               made.tract.depth_of(*truth.breach_m)));
+  cases::Certificate out{.preparation = made.preparation};
+  out.walls.push_back(wall);
+  return out.to_json();
+}
+
+void print_wall(const Json& wall) {
+  const auto number = [&](const char* key) {
+    return wall[key].is_null() ? std::string("not known")
+                               : fmt::format("{:.1f}", wall[key].get<double>());
+  };
+  fmt::print("{:>9}  {}  K {}, B {}, FA {}{}\n", wall["wall"].get<std::string>(),
+             wall["passes"].get<bool>() ? "can be told     " : "CANNOT be told  ", number("k"),
+             number("b"), number("fa"),
+             wall["why_not"].is_null() ? "" : "  " + wall["why_not"].get<std::string>());
+}
+
+/// Exit status 1 where a breach cannot be told.
+Outcome certify(const CaseOptions& o) {
+  const auto opened = TRY(cases::open_case(o.folder));
+  const auto certificate = TRY(certificate_of(opened));
+  const bool passes = certificate["passes"].get<bool>();
+  if (o.json) {
+    std::puts(certificate.dump(2).c_str());
+    return passes ? 0 : 1;
+  }
+  if (!opened.definition.certified)
+    fmt::print("made without a certificate; its breach against the tract's other places:\n");
+  for (const Json& wall : certificate["walls"]) print_wall(wall);
+  return passes ? 0 : 1;
 }
 
 }  // namespace
@@ -87,12 +136,21 @@ Command case_command() {
                                    "are valid, else 1, and the first invalid part is named");
             CLI::App* look =
                 app.add_subcommand("show", "show title, tract, model and parts, but not the truth");
-            for (CLI::App* each : {check, look}) {
+            CLI::App* felt = app.add_subcommand(
+                "certify",
+                "what an ideal observer can tell of each wall by feel: the certificate that the "
+                "case was made with, or its breach tried now; the exit code is 0 if every breach "
+                "can be told, else 1. It shows the truth");
+            for (CLI::App* each : {check, look, felt}) {
               each->add_option("DIR", options->folder, "folder of the case")->required();
               each->add_flag("--json", options->json, "print as JSON");
               each->footer("Example:\n  tractus case " + each->get_name() + " l3-left-medial");
             }
-            return [options, check] { return check->parsed() ? verify(*options) : show(*options); };
+            return [options, check, felt] {
+              return check->parsed()  ? verify(*options)
+                     : felt->parsed() ? certify(*options)
+                                      : show(*options);
+            };
           }};
 }
 

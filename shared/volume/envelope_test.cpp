@@ -1,0 +1,118 @@
+#include "volume/envelope.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <random>
+
+namespace tractus {
+namespace volume {
+namespace {
+
+using testing::HasSubstr;
+using Scene = std::function<double(const Vec3&)>;
+
+constexpr double kPedicle_mm = 6.0;  // outer radius, along y from −20 to 20; the canal is at x < −6
+constexpr double kBody_mm = 16.0;  // a ball about (0, −30, 0) that the pedicle runs into
+
+bool within(const Vec3& p_mm, double thinner_mm) {
+  const bool pedicle =
+      std::hypot(p_mm.x(), p_mm.z()) < kPedicle_mm - thinner_mm && p_mm.y() > -30 && p_mm.y() < 20;
+  return pedicle || (p_mm - Vec3(0, -30, 0)).norm() < kBody_mm - thinner_mm;
+}
+
+/// A pedicle and a body: 1.2 mm of cortex about marrow that measures as the soft tissue outside.
+double soft_bone(const Vec3& p_m) {
+  const Vec3 p = p_m * 1e3;
+  if (within(p, 1.2)) return 60.0;
+  return within(p, 0.0) ? 700.0 : 50.0;
+}
+
+/// Drawn in voxels of 1 mm, each the mean of 27 parts, with noise of 15 HU.
+Volume drawn_soft(const Scene& scene, double slice_mm = 1.0) {
+  const Vec3 spacing(0.001, 0.001, slice_mm * 1e-3);
+  Volume v{.geometry = {{60, 90, int(60 / slice_mm)},
+                        spacing,
+                        Vec3(-0.030, -0.055, -0.030),
+                        Mat3::Identity()},
+           .slope = 1,
+           .intercept = -1024,
+           .counts = {}};
+  std::mt19937 random(7);
+  std::normal_distribution<double> noise(0.0, 15.0);
+  for (int k = 0; k < v.geometry.dims[2]; ++k)
+    for (int j = 0; j < v.geometry.dims[1]; ++j)
+      for (int i = 0; i < v.geometry.dims[0]; ++i) {
+        double sum = 0.0;
+        for (int part = 0; part < 27; ++part)
+          sum += scene(v.geometry.position_of(
+              Vec3(i, j, k) + Vec3(part % 3 - 1, part / 3 % 3 - 1, part / 9 - 1) / 3.0));
+        v.counts.push_back(v.count_of(sum / 27.0 + noise(random)));
+      }
+  return v;
+}
+
+Tract soft_tract() {
+  return {.entry_m = Vec3(0, 0.018, 0),
+          .axis = -Vec3::UnitY(),
+          .length_m = 0.050,
+          .radius_m = 0.0015,
+          .medial = -Vec3::UnitX(),
+          .superior = Vec3::UnitZ()};
+}
+
+TEST(EnvelopeAbout, FindsTheOuterFaceWhereMarrowMeasuresAsSoftTissue) {
+  const auto envelope = envelope_about(drawn_soft(soft_bone), soft_tract());
+  ASSERT_TRUE(envelope) << envelope.error().what;
+  const auto face_mm = [&](const Vec3& from_mm, const Vec3& along) {
+    double r = 0.0;
+    while (r < 25.0 && (*envelope)->share((from_mm + r * along) * 1e-3) > 0.5) r += 0.05;
+    return r;
+  };
+  for (const Vec3& along : {Vec3(1, 0, 0), Vec3(-1, 0, 0), Vec3(0, 0, 1), Vec3(0, 0, -1)}) {
+    for (const double y : {10.0, 4.0, -4.0})
+      EXPECT_NEAR(face_mm(Vec3(0, y, 0), along), kPedicle_mm, 0.8) << y;
+    EXPECT_NEAR(face_mm(Vec3(0, -30, 0), along), kBody_mm, 0.8);
+  }
+  EXPECT_NEAR(face_mm(Vec3(0, -32, 0), -Vec3::UnitY()), kBody_mm - 2.0, 0.8);  // the front
+}
+
+TEST(EnvelopeAbout, SaysWhatItCannotBeFoundIn) {
+  const auto why = [](const Volume& ct, const Tract& tract) {
+    const auto found = envelope_about(ct, tract);
+    return found ? std::string("found") : found.error().what;
+  };
+  EXPECT_THAT(why(drawn_soft(soft_bone, 5.0), soft_tract()), HasSubstr("slices are 5.0 mm thick"));
+  const auto screw = [](const Vec3& p) {
+    return std::hypot(p.x() - 0.003, p.z()) < 0.002 ? 3000.0 : soft_bone(p);
+  };
+  EXPECT_THAT(why(drawn_soft(screw), soft_tract()), HasSubstr("metal"));
+  const auto dye = [](const Vec3& p) {
+    return p.x() < -0.0065 && soft_bone(p) == 50.0 ? 320.0 : soft_bone(p);
+  };
+  EXPECT_THAT(why(drawn_soft(dye), soft_tract()), HasSubstr("spinal canal"));
+  Tract beside = soft_tract();
+  beside.entry_m.x() = 0.020;
+  EXPECT_THAT(why(drawn_soft(soft_bone), beside), HasSubstr("no closed ring"));
+}
+
+TEST(EnvelopeOfLabels, IsTheLabelsVoxels) {
+  Volume labels{.geometry = {{4, 4, 4}, Vec3::Constant(0.001), Vec3::Zero(), Mat3::Identity()},
+                .slope = 1,
+                .intercept = 0,
+                .counts = std::vector<std::uint16_t>(64, 21)};
+  labels.counts[labels.offset(1, 1, 1)] = labels.counts[labels.offset(2, 1, 1)] = 22;
+  const auto envelope = envelope_of_labels(labels, 22);
+  ASSERT_TRUE(envelope);
+  EXPECT_EQ((*envelope)->share(Vec3(0.0015, 0.001, 0.001)), 1.0);
+  EXPECT_NEAR((*envelope)->share(Vec3(0.001, 0.0015, 0.001)), 0.5, 1e-9);
+  EXPECT_EQ((*envelope)->share(Vec3(0.003, 0.003, 0.003)), 0.0);
+  EXPECT_EQ((*envelope)->share(Vec3(0.1, 0.0, 0.0)), 0.0);
+  EXPECT_FALSE(envelope_of_labels(labels, 5));
+}
+
+}  // namespace
+}  // namespace volume
+}  // namespace tractus
