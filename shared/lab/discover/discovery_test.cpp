@@ -17,11 +17,11 @@ namespace {
 using testing::HasSubstr;
 
 /// What is hidden, N: of depth, speed and time since the last sample; called once a sample in order.
-using Hidden = std::function<double(double x_m, double v_m_s, double bone_N, bool first)>;
+using HiddenForce = std::function<double(double x_m, double v_m_s, double bone_N, bool first)>;
 
 /// Six trials of 6 s at 500 Hz in one layer, 4000 N/m and 2000 N·s/m about 6 mm, with noise of
 /// 0.03 N and a hidden force; written down here.
-trial::ProbingSet recorded_with(const Hidden& hidden) {
+trial::ProbingSet recorded_with(const HiddenForce& hidden) {
   trial::ProbingSet set;
   set.folder = "set";
   for (int k = 0; k < 6; ++k) {
@@ -49,7 +49,7 @@ struct Found {
 };
 
 /// The search on top of the base alone, as if the catalogue had found nothing.
-Found found_in(const Hidden& hidden) {
+Found found_in(const HiddenForce& hidden) {
   models::ProbingModel model;
   model.layers = {{0.0, 0.05, 3800.0, 2100.0, 0.006}};
   auto problem = make_probing_problem(model, recorded_with(hidden), {.threads = 2});
