@@ -111,6 +111,35 @@ TEST_F(Carve, MakesACaseWhoseTruthIsWhereTheWallIs) {
   EXPECT_EQ(drilled->geometry.spacing_m, Vec3::Constant(0.0005));
 }
 
+TEST_F(Carve, FillsMarrowAndSaysWhatCanBeFelt) {
+  const auto ran = carve(std::string(kLeft) + "--breach medial --preparation filled --json");
+  ASSERT_EQ(ran.exit, 0) << ran.err;
+  const auto report = core::parse_json(ran.out, "out");
+  ASSERT_TRUE(report) << ran.out;
+  EXPECT_EQ((*report)["preparation"], "filled");
+  EXPECT_EQ((*report)["certificate"]["walls"].size(), 5u);
+  const auto opened = cases::open_case(work() / "case");
+  ASSERT_TRUE(opened) << opened.error().what;
+  EXPECT_EQ(opened->definition.preparation, volume::Preparation::filled);
+  ASSERT_TRUE(opened->definition.certified);
+  const bool passes = (*report)["certificate"]["passes"].get<bool>();
+  EXPECT_EQ(*opened->definition.certified, passes);
+  EXPECT_EQ(tractus("case certify case").exit, passes ? 0 : 1);
+  // Marrow of 60 HU above the channel: α = 0.6 + 0.4 · 60/700, so 150 + 550 α = 498.9 HU by hand.
+  const auto drilled = volume::VolumeFile::open(work() / "case" / "volume.tvol")->read_all();
+  ASSERT_TRUE(drilled);
+  EXPECT_NEAR(drilled->value_at(Vec3(0.022, 0.014, 0.003)), 498.9, 2.0);
+  for (const cases::Part& part : opened->definition.parts)
+    EXPECT_EQ(part.secret, part.name != cases::kVolumePart) << part.name;
+}
+
+TEST_F(Carve, TriesACaseThatWasMadeWithoutACertificate) {
+  ASSERT_EQ(carve("--no-channel " + std::string(kLeft)).exit, 0);
+  const auto ran = tractus("case certify case");
+  EXPECT_EQ(ran.exit, 2);
+  EXPECT_THAT(ran.err, HasSubstr("make it anew"));
+}
+
 TEST_F(Carve, KnowsTheRightPedicleFromTheLeft) {
   const auto ran = carve("--entry=-12,19,0 --target=-12,-20,0 --breach lateral --json");
   ASSERT_EQ(ran.exit, 0) << ran.err;
@@ -154,6 +183,9 @@ TEST_F(Carve, RefusesWithOneLineAndLeavesNothingBehind) {
       {left + "--midline-x 900", "a distance from entry to midline of"},
       {"--entry 40,25,19 --target 40,10,19 --midline-x 5", "meets no bone"},
       {left + "--model none.json", "none.json"},
+      {left + "--preparation solid", "--preparation: 'solid'"},
+      {left + "--envelope mask.nii", "--envelope: needs --preparation filled"},
+      {left + "--certified --no-channel", "--certified"},
       {left + "--png none/picture.png", "none/picture.png"},
   };
   for (const auto& [arguments, expected] : wrong) {
