@@ -1,8 +1,11 @@
 /** One way to the server: same origin, cookie, time-out, and every failure as an ApiError with a sentence for a person. */
 import * as v from 'valibot';
+import { nextSignIn } from './session-end';
 
 const kRoot = '/api/v1';
 const kTimeout_ms = 20_000;
+/** Below it a 401 is an answer about the credentials that were sent. */
+const kSession = '/session';
 
 export type ApiErrorCode =
   | 'unauthorised'
@@ -66,7 +69,19 @@ function content({ body, text, bytes: raw }: Request): { type: string; sent: str
   return body === undefined ? null : { type: 'application/json', sent: JSON.stringify(body) };
 }
 
+/** A session that ended is no failure of what was asked: once the same person is back, it is asked again. */
 async function send(path: string, request: Request): Promise<Response> {
+  try {
+    return await sendOnce(path, request);
+  } catch (reason) {
+    const ended = reason instanceof ApiError && reason.code === 'unauthorised' && !path.startsWith(kSession);
+    if (!ended) throw reason;
+    if (await nextSignIn(request.signal)) return send(path, request);
+    throw new ApiError('refused', 'Another person has signed in.');
+  }
+}
+
+async function sendOnce(path: string, request: Request): Promise<Response> {
   const { method = 'GET', timeout_ms = kTimeout_ms, signal } = request;
   const payload = content(request);
   const headers = new Headers({ Accept: 'application/json' });

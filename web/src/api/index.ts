@@ -1,3 +1,4 @@
+export { onSessionEnd, resumeRequests } from './session-end';
 export { ApiError, type ApiErrorCode } from './client';
 export type { Preview } from './preview';
 export * from './queries';

@@ -123,7 +123,7 @@ export const previewQuery = (caseId: string) =>
     staleTime: Infinity,
   });
 
-/** A 401 anywhere means that the session has ended: the pages give way to the sign-in, at the same address. */
+/** The session has ended: the sign-in is shown above the page, which stays as it was. */
 export function endSession(client: QueryClient): void {
   client.setQueryData(sessionQuery.queryKey, null);
 }
