@@ -81,6 +81,27 @@ async function send(path: string, request: Request): Promise<Response> {
   }
 }
 
+/** Abbreviations in the names of fields, as a person writes them. */
+const kFieldWords: Record<string, string | undefined> = { pin: 'PIN', csv: 'CSV', id: 'ID', utc: '', us: '' };
+
+/** "body/pin: 4 to 12 digits are expected" as "PIN: 4 to 12 digits are expected"; other messages as they are. */
+export function withoutPointer(message: string): string {
+  const [, pointer, rest] = /^(?:body(?:: )?)?((?:\/[\w*-]+)+): (.+)$/s.exec(message) ?? [];
+  if (pointer === undefined || rest === undefined) return message.replace(/^body: /, '');
+  const names = pointer.split('/').filter((part) => part !== '' && part !== '*');
+  const words = names.map((part) =>
+    /^\d+$/.test(part)
+      ? `${Number(part) + 1}`
+      : part
+          .split('_')
+          .map((word) => kFieldWords[word] ?? word)
+          .filter(Boolean)
+          .join(' '),
+  );
+  const name = words.join(' ');
+  return `${name.charAt(0).toUpperCase()}${name.slice(1)}: ${rest}`;
+}
+
 async function sendOnce(path: string, request: Request): Promise<Response> {
   const { method = 'GET', timeout_ms = kTimeout_ms, signal } = request;
   const payload = content(request);
@@ -106,7 +127,9 @@ async function sendOnce(path: string, request: Request): Promise<Response> {
   }
   if (response.ok) return response;
   const failure = v.safeParse(errorSchema, await response.json().catch(() => undefined));
-  const text = failure.success ? failure.output.error : `The server answered with status ${response.status}.`;
+  const text = failure.success
+    ? withoutPointer(failure.output.error)
+    : `The server answered with status ${response.status}.`;
   const needsCode = failure.success && failure.output.code === 'code_needed';
   const retryAfter = response.headers.get('Retry-After');
   throw new ApiError(
