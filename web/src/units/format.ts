@@ -110,6 +110,9 @@ export function formatBytes(bytes: number): string {
 
 /** In the reader's own time zone: "21 Nov 2025, 05:35". */
 export const formatDateTime = (value: UtcMicroseconds) => kDateTime.format(new Date(value / 1000));
+const kDate = new Intl.DateTimeFormat('en-GB', { dateStyle: 'medium' });
+/** "21 Nov 2025". */
+export const formatDate = (value: UtcMicroseconds) => kDate.format(new Date(value / 1000));
 export const formatDateTimeLong = (value: UtcMicroseconds) => kSeconds.format(new Date(value / 1000));
 /** The reader's own time zone, in which times are shown: "Europe/Berlin, UTC+2". */
 export function timeZone(now = new Date()): string {
