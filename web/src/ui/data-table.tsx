@@ -63,7 +63,7 @@ const kSigns = { ascending: '▲', descending: '▼', none: '↕' } as const;
 const titleOf = <Row,>({ title, name }: DataColumn<Row>) => title ?? (typeof name === 'string' ? name : '');
 
 /** A column's name as the button that sorts by it; where the name is a term with its definition, the button stands beside it. */
-export function Head<Row>({
+export function SortHead<Row>({
   column,
   sorted,
   onPress,
@@ -177,7 +177,7 @@ export function DataTable<Row>({
     if (!column.by) return column;
     const sorted = column !== sortedBy ? undefined : sort?.down ? 'descending' : 'ascending';
     const press = () => table.getColumn(String(i))?.toggleSorting();
-    return { ...column, sorted, name: <Head column={column} sorted={sorted} onPress={press} /> };
+    return { ...column, sorted, name: <SortHead column={column} sorted={sorted} onPress={press} /> };
   });
   const ordered = sortedBy ? `sorted by ${titleOf(sortedBy)}` : order;
   return (
