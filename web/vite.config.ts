@@ -1,5 +1,8 @@
 import react from '@vitejs/plugin-react';
+import { readdirSync, readFileSync, writeFileSync } from 'node:fs';
+import { join } from 'node:path';
 import { fileURLToPath } from 'node:url';
+import { brotliCompressSync, constants, gzipSync } from 'node:zlib';
 import type { Connect, Plugin } from 'vite';
 import { configDefaults, defineConfig } from 'vitest/config';
 import { makeFixture } from './test/fixture/api.ts';
@@ -20,11 +23,38 @@ function fixtureApi(): Plugin {
   };
 }
 
+/** Text that is worth compressing, and from which size on. */
+const kText = /\.(html|js|css|svg|json)$/;
+const kWorth_bytes = 1024;
+
+/** Beside each file of text its copies FILE.br and FILE.gz, which the server sends to browsers that read them. */
+function compressedCopies(): Plugin {
+  let folder = '';
+  return {
+    name: 'compressed-copies',
+    apply: 'build',
+    configResolved({ root, build }) {
+      folder = join(root, build.outDir);
+    },
+    closeBundle() {
+      for (const name of readdirSync(folder, { recursive: true, encoding: 'utf8' })) {
+        if (!kText.test(name)) continue;
+        const file = join(folder, name),
+          text = readFileSync(file);
+        if (text.length < kWorth_bytes) continue;
+        const quality = { [constants.BROTLI_PARAM_QUALITY]: constants.BROTLI_MAX_QUALITY };
+        writeFileSync(`${file}.br`, brotliCompressSync(text, { params: quality }));
+        writeFileSync(`${file}.gz`, gzipSync(text, { level: constants.Z_BEST_COMPRESSION }));
+      }
+    },
+  };
+}
+
 // TRACTUS_URL: a running tractus-server to develop against; without it the fixture's simulated trials are shown.
 const server = process.env.TRACTUS_URL;
 
 export default defineConfig({
-  plugins: [react(), ...(server || process.env.VITEST ? [] : [fixtureApi()])],
+  plugins: [react(), compressedCopies(), ...(server || process.env.VITEST ? [] : [fixtureApi()])],
   resolve: { alias: { '@': fileURLToPath(new URL('./src', import.meta.url)) } },
   server: server ? { proxy: { '/api': server } } : {},
   build: {

@@ -106,6 +106,15 @@ class Relations : public PeopleTest {
         {"sendModel",
          {{"id", "/lab/models/$/send", {{"all", true}}, "m1", "m2"},
           {"/stations/*", "/lab/models/m1/send", {{"stations", {"$"}}}, "s1", "s2"}}},
+        {"recallModel",
+         {{"id", "/lab/models/$/stations/s1", {}, "m1", "m2"},
+          {"station_id", "/lab/models/m1/stations/$", {}, "s1", "s2"}}},
+        {"importAccounts",
+         {{"/cohort",
+           "/accounts/import",
+           {{"csv", "name\nx"}, {"cohort", "$"}},
+           "c-tom",
+           "c-tia"}}},
         {"referenceWay",
          {{"reference",
            "/trials/" + trial_of("tom") + "/references/$",
@@ -191,7 +200,7 @@ TEST_F(Relations, EveryCellOfRoutesTimesRolesTimesEndsIsAsThePolicySays) {
     }
   }
   std::printf("cells of relation routes x ends x roles x {own, stranger's}: %d\n", cells);
-  EXPECT_EQ(cells, 18 * 7 * 2);
+  EXPECT_EQ(cells, 21 * 7 * 2);
 }
 
 /// A route that is new and changes something names the other ends of what it brings together, or is

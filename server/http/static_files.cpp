@@ -66,11 +66,64 @@ bool lies_in(const fs::path& folder, const fs::path& file) {
   return end == real_folder.end() && fs::is_regular_file(real_file, failure);
 }
 
-/// Size and time of change: another build has another one.
-std::string entity_tag(const fs::path& file) {
+/// A coding that the web build stores beside a file, best first.
+struct Coding {
+  std::string_view name, extension;
+};
+constexpr std::array<Coding, 2> kCodings{{{"br", ".br"}, {"gzip", ".gz"}}};
+
+std::string_view trimmed(std::string_view text) {
+  const auto first = text.find_first_not_of(" \t");
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(" \t") - first + 1);
+}
+
+/// Does an Accept-Encoding header name the coding, with a weight above 0 (RFC 9110, section 12.5.3)?
+/// "*" is not taken as consent: a client that reads a coding names it.
+bool accepts(std::string_view header, std::string_view coding) {
+  while (!header.empty()) {
+    const std::string_view item = header.substr(0, header.find(','));
+    header.remove_prefix(std::min(header.size(), item.size() + 1));
+    const std::string_view name = trimmed(item.substr(0, item.find(';')));
+    if (name != coding) continue;
+    const auto weight = item.find("q=");
+    return weight == std::string_view::npos ||
+           item.find_first_of("123456789", weight) != std::string_view::npos;
+  }
+  return false;
+}
+
+/// Size and time of change: another build has another one, and so has each coding of a file.
+std::string entity_tag(const fs::path& file, std::string_view coding) {
   std::error_code ignored;
   const auto changed = fs::last_write_time(file, ignored).time_since_epoch().count();
-  return fmt::format("\"{:x}-{:x}\"", fs::file_size(file, ignored), changed);
+  return fmt::format("\"{:x}-{:x}{}{}\"", fs::file_size(file, ignored), changed,
+                     coding.empty() ? "" : "-", coding);
+}
+
+/// The file that is sent for a file of the folder: itself, or a compressed copy beside it.
+struct Sent {
+  fs::path file;
+  std::string_view coding = {};  ///< empty: the file itself
+  bool varies = false;           ///< another client may get another coding
+};
+
+Sent sent_for(const fs::path& folder, const fs::path& file, std::string_view accepted) {
+  Sent out{file};
+  for (const auto& [name, extension] : kCodings) {
+    const fs::path copy = fs::path(file) += extension;
+    if (!lies_in(folder, copy)) continue;
+    out.varies = true;
+    if (out.coding.empty() && accepts(accepted, name)) out.file = copy, out.coding = name;
+  }
+  return out;
+}
+
+/// The headers that both the file and the answer "unchanged" have.
+void describe(Response& response, const Sent& sent, const std::string& tag, bool hashed) {
+  response.with("ETag", tag)
+      .with("Cache-Control", hashed ? "public, max-age=31536000, immutable" : "no-cache");
+  if (sent.varies) response.with("Vary", "Accept-Encoding");
 }
 
 }  // namespace
@@ -85,16 +138,17 @@ Response StaticFiles::answer(const RequestHead& request) const {
   const bool own_path = relative->extension().empty();
   const fs::path file = folder_ / (own_path ? fs::path("index.html") : *relative);
   if (!lies_in(folder_, file)) return plain(404, "no such page\n");
-  const std::string tag = entity_tag(file);
   const bool hashed = !own_path && relative->begin()->string() == "assets";
-  const std::string kept = hashed ? "public, max-age=31536000, immutable" : "no-cache";
+  const Sent sent = sent_for(folder_, file, request.header("accept-encoding"));
+  const std::string tag = entity_tag(sent.file, sent.coding);
   if (request.header("if-none-match") == tag) {
     Response unchanged{.status = 304, .headers = {}, .body = std::string()};
-    return unchanged.with("ETag", tag).with("Cache-Control", kept), unchanged;
+    return describe(unchanged, sent, tag, hashed), unchanged;
   }
-  auto response = file_response(file, request, type_of(file));
+  auto response = file_response(sent.file, request, type_of(file));
   if (!response) return plain(404, "no such page\n");
-  response->with("ETag", tag).with("Cache-Control", kept);
+  describe(*response, sent, tag, hashed);
+  if (!sent.coding.empty()) response->with("Content-Encoding", std::string(sent.coding));
   return std::move(*response);
 }
 

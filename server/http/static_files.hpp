@@ -14,7 +14,8 @@ class StaticFiles {
  public:
   explicit StaticFiles(std::filesystem::path folder) : folder_(std::move(folder)) {}
   /// Allows only GET and HEAD (else 405). Browsers may cache files with a content hash in their
-  /// name for ever, and revalidate other files on each request (ETag, 304).
+  /// name for ever, and revalidate other files on each request (ETag, 304). Where FILE.br or
+  /// FILE.gz lies beside a file and the request accepts that coding, that copy is sent instead.
   Response answer(const RequestHead& request) const;
 
  private:

@@ -64,6 +64,45 @@ TEST_F(Site, AnUnchangedFileIsNotSentAgain) {
   EXPECT_EQ(get("/", {{"if-none-match", "\"other\""}}).status, 200);
 }
 
+TEST_F(Site, ACompressedCopyIsSentToAClientThatReadsItsCoding) {
+  write("dist/assets/app-1a2b.js.br", "brotli");
+  write("dist/assets/app-1a2b.js.gz", "gzip");
+  const std::string path = "/assets/app-1a2b.js";
+  const auto sent_to = [&](const std::string& accepted) {
+    return get(path, {{"accept-encoding", accepted}});
+  };
+  // Accept-Encoding and its weights: RFC 9110, section 12.5.3, with its examples.
+  EXPECT_EQ(text(sent_to("gzip, deflate, br")), "brotli");
+  EXPECT_EQ(sent_to("gzip, deflate, br").header("Content-Encoding"), "br");
+  EXPECT_EQ(text(sent_to("compress;q=0.5, gzip;q=1.0")), "gzip");
+  EXPECT_EQ(sent_to("gzip").header("Content-Encoding"), "gzip");
+  EXPECT_EQ(text(sent_to("br;q=0, gzip ; q=0.001")), "gzip");
+  for (const char* plain : {"", "identity", "gzip;q=0.0, brx", "*"}) {
+    EXPECT_EQ(text(sent_to(plain)), "script") << plain;
+    EXPECT_EQ(sent_to(plain).header("Content-Encoding"), "") << plain;
+  }
+  for (const char* any : {"", "br", "gzip"}) {
+    EXPECT_EQ(sent_to(any).header("Content-Type"), "text/javascript; charset=utf-8") << any;
+    EXPECT_EQ(sent_to(any).header("Vary"), "Accept-Encoding") << any;
+  }
+}
+
+TEST_F(Site, EachCodingOfAFileHasAnEntityTagOfItsOwn) {
+  write("dist/index.html.br", "page");  // the same bytes and perhaps the same time
+  const std::string plain(get("/").header("ETag"));
+  const std::string coded(get("/", {{"accept-encoding", "br"}}).header("ETag"));
+  EXPECT_NE(plain, coded);
+  const Response unchanged = get("/", {{"accept-encoding", "br"}, {"if-none-match", coded}});
+  EXPECT_EQ(unchanged.status, 304);
+  EXPECT_EQ(unchanged.header("Vary"), "Accept-Encoding");
+  EXPECT_EQ(get("/", {{"if-none-match", coded}}).status, 200);
+}
+
+TEST_F(Site, ACopyThatLeadsOutOfTheFolderIsNotSent) {
+  fs::create_symlink(root_ / "secret.txt", root_ / "dist" / "index.html.gz");
+  EXPECT_EQ(text(get("/", {{"accept-encoding", "gzip"}})), "page");
+}
+
 TEST_F(Site, NothingOutsideTheFolderIsServed) {
   for (const char* path :
        {"/../secret.txt", "/assets/../../secret.txt", "/%2e%2e/secret.txt", "/..%2fsecret.txt",

@@ -52,9 +52,8 @@ Result<volume_io::Imported> read(const fs::path& upload, const fs::path& folder,
                                  const volume_io::UidKey& key) {
   if (!volume_io::is_zip(upload))
     return volume_io::read_volume(upload, volume_io::ReadOptions{.uid_key = key});
-  const fs::path slices = folder / "slices";
-  TRY(volume_io::unpack_slices(upload, slices));
-  return volume_io::read_volume(slices, volume_io::ReadOptions{.uid_key = key});
+  const fs::path volume = TRY(volume_io::unpack_volume(upload, folder / "unpacked"));
+  return volume_io::read_volume(volume, volume_io::ReadOptions{.uid_key = key});
 }
 
 }  // namespace

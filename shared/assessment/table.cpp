@@ -21,9 +21,7 @@ constexpr std::uint64_t kLargest = 512ull << 20;
 
 std::string no_column(const std::string& file, const std::string& column,
                       const std::vector<std::string_view>& header) {
-  const auto listed = header.size() > 20
-                          ? fmt::format("{} others", header.size())
-                          : core::one_line(fmt::format("{}", fmt::join(header, ", ")), 400);
+  const auto listed = core::one_line(fmt::format("{}", fmt::join(header, ", ")), 2000);
   return fmt::format("{}: there is no column '{}'; the columns are {}", file, column, listed);
 }
 

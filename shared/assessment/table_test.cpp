@@ -40,6 +40,22 @@ TEST(Table, SaysInWhichLineItStumbled) {
             "t.csv:1: this is no text file");
 }
 
+TEST(Table, NamesTheColumnsThatAreThereWhenOneIsNot) {
+  std::string header = "c0";
+  for (int i = 1; i < 64; ++i) header += ",c" + std::to_string(i);
+  std::string row = "0";
+  for (int i = 1; i < 64; ++i) row += ",0";
+  const std::string text = header + "\n" + row + "\n";
+  const auto bytes = core::bytes_of(text);
+  const std::vector<std::string> wanted{"operation_time"};
+  const auto table = Table::parse({bytes.begin(), bytes.end()}, "t.csv", wanted, Missing::keep);
+  ASSERT_FALSE(table);
+  EXPECT_NE(table.error().what.find("no column 'operation_time'; the columns are c0, c1, c2"),
+            std::string::npos)
+      << table.error().what;
+  EXPECT_NE(table.error().what.find("c63"), std::string::npos) << table.error().what;
+}
+
 }  // namespace
 }  // namespace assessment
 }  // namespace tractus

@@ -95,6 +95,22 @@ core::Result<Cohort> cohort_of(const Table& table, const TraineeColumns& columns
   return out;
 }
 
+std::vector<Relapse> relapses_in(const std::vector<double>& sums, double threshold,
+                                 std::size_t before) {
+  std::vector<Relapse> out;
+  bool relapsed = false;
+  for (std::size_t t = 0; t < sums.size(); ++t) {
+    if (!relapsed && sums[t] >= threshold) {
+      relapsed = true;
+      out.push_back({before + t + 1, 0});
+    } else if (relapsed && sums[t] == 0.0) {
+      relapsed = false;
+      out.back().recovered_at = before + t + 1;
+    }
+  }
+  return out;
+}
+
 Standing standing(const std::vector<Attempt>& attempts, const statistics::Rates& rates,
                   double threshold, double relapse) {
   std::vector<bool> failures;
@@ -107,10 +123,9 @@ Standing standing(const std::vector<Attempt>& attempts, const statistics::Rates&
   failures.erase(failures.begin(),
                  failures.begin() + static_cast<std::ptrdiff_t>(out.signalled_at));
   out.relapse_sums = statistics::deterioration_cusum(failures, rates);
-  if (const auto at = statistics::first_at(out.relapse_sums, relapse)) {
-    out.relapsed_at = out.signalled_at + at;
+  out.relapses = relapses_in(out.relapse_sums, relapse, out.signalled_at);
+  if (!out.relapses.empty() && out.relapses.back().recovered_at == 0)
     out.state = Standing::State::relapsed;
-  }
   return out;
 }
 

@@ -1,6 +1,7 @@
 /// One trainee: the curve, whether competence can be said, strengths, what to do next.
 ///
 ///     success at each trial → LC-CUSUM (competence) → from its signal on CUSUM (relapse)
+///     a relapse ends where that sum is back at 0: since then nothing speaks for deterioration
 ///     scenario: Beta(½ + failures, ½ + successes); next is the one whose failure rate may be
 ///     highest
 ///               (its 90 % point), the least recently done of equals
@@ -43,11 +44,21 @@ struct Cohort {
 /// comes twice for one trainee.
 core::Result<Cohort> cohort_of(const Table& table, const TraineeColumns& columns);
 
+/// From the alarm of the CUSUM to its return to 0.
+struct Relapse {
+  std::size_t at = 0, recovered_at = 0;  ///< trial, from 1; 0: not recovered
+};
+
+/// The relapses in sums of a CUSUM that follow trial `before`; `threshold` > 0 raises the alarm.
+std::vector<Relapse> relapses_in(const std::vector<double>& sums, double threshold,
+                                 std::size_t before);
+
 struct Standing {
   enum class State { learning, competent, relapsed };
   State state = State::learning;
-  std::size_t signalled_at = 0, relapsed_at = 0;  ///< trial, from 1; 0: not
-  std::vector<double> sums, relapse_sums;         ///< LC-CUSUM per trial; CUSUM from the signal on
+  std::size_t signalled_at = 0;            ///< trial, from 1; 0: not
+  std::vector<Relapse> relapses;           ///< in order of time; all but the last are over
+  std::vector<double> sums, relapse_sums;  ///< LC-CUSUM per trial; CUSUM from the signal on
 };
 
 /// @param threshold  h of the LC-CUSUM; `relapse`, of the CUSUM after it.

@@ -151,6 +151,14 @@ plot::Figure sums_picture(const Standing& of, double threshold, double relapse) 
   return out;
 }
 
+Json relapses_json(const std::vector<Relapse>& relapses) {
+  Json out = Json::array();
+  for (const auto& [at, recovered_at] : relapses)
+    out.push_back({{"at_trial", at},
+                   {"recovered_at_trial", recovered_at ? Json(recovered_at) : Json(nullptr)}});
+  return out;
+}
+
 /// Chance that somebody inadequate is declared competent within so many trials.
 double risk_within(std::size_t trials, double threshold, const Certification& rule) {
   if (threshold == rule.threshold && trials >= 1 && trials <= rule.passes_if_inadequate.size())
@@ -188,7 +196,7 @@ std::pair<bool, std::string> certified(const Standing& of, std::size_t trials, d
     return {false, too_few(trials, rule)};
   if (of.state == Standing::State::relapsed)
     return {false, fmt::format("competent at trial {}, relapsed at trial {}", of.signalled_at,
-                               of.relapsed_at)};
+                               of.relapses.back().at)};
   if (of.state == Standing::State::learning)
     return {false, fmt::format("no signal of competence in {} trials", trials)};
   const double risk = risk_within(of.signalled_at, threshold, rule);
@@ -197,7 +205,11 @@ std::pair<bool, std::string> certified(const Standing& of, std::size_t trials, d
       "{:.3f}",
       100.0 * rule.rates.inadequate, threshold, of.signalled_at, risk);
   if (risk > rule.risk) return {false, chance + fmt::format(", more than {:.2f}", rule.risk)};
-  return {true, fmt::format("signal at trial {}; {}", of.signalled_at, chance)};
+  const std::string recovered =
+      of.relapses.empty() ? ""
+                          : fmt::format("; relapsed at trial {}, recovered at trial {}",
+                                        of.relapses.back().at, of.relapses.back().recovered_at);
+  return {true, fmt::format("signal at trial {}{}; {}", of.signalled_at, recovered, chance)};
 }
 
 }  // namespace
@@ -227,7 +239,7 @@ TraineeReport trainee_report(const Cohort& cohort, std::size_t trainee, const Ce
                 {"trials_needed", rule.trials == 0 ? Json(nullptr) : Json(rule.trials)},
                 {"threshold", threshold},
                 {"competent_at_trial", of.signalled_at ? Json(of.signalled_at) : Json(nullptr)},
-                {"relapse_at_trial", of.relapsed_at ? Json(of.relapsed_at) : Json(nullptr)},
+                {"relapses", relapses_json(of.relapses)},
                 {"lc_cusum", of.sums},
                 {"scenarios", scenario_table(cohort, counts, rules.rates)},
                 {"next", next_case(cohort, counts)},

@@ -59,8 +59,27 @@ TEST(Trainee, SixtyRightAreCertifiedAndALapseIsSeen) {
   // After the signal two failures (2 × 0.916 > 1.25) raise the alarm.
   const auto lapsed = report(std::string(60, '1') + "00");
   EXPECT_EQ(lapsed["state"], "relapsed");
-  EXPECT_EQ(lapsed["relapse_at_trial"], 62);
+  EXPECT_EQ(lapsed["relapses"],
+            core::Json::parse(R"([{"at_trial": 62, "recovered_at_trial": null}])"));
   EXPECT_EQ(lapsed["certified"], false);
+}
+
+TEST(Trainee, ARelapseEndsWhereItsSumIsBackAtZero) {
+  // By hand: a failure adds ln(0.25/0.10) = 0.9163, a success takes ln(0.90/0.75) = 0.1823. Two
+  // failures from 0 make 1.8326, so that the 11th success (11 · 0.1823 = 2.0055) is the first that
+  // leaves nothing: after 10 there is 0.0094.
+  const std::string lapsed = std::string(60, '1') + "00";
+  EXPECT_EQ(report(lapsed + std::string(10, '1'))["state"], "relapsed");
+  const auto back = report(lapsed + std::string(11, '1'));
+  EXPECT_EQ(back["state"], "competent");
+  EXPECT_EQ(back["relapses"], core::Json::parse(R"([{"at_trial": 62, "recovered_at_trial": 73}])"));
+  EXPECT_EQ(back["certified"], true) << back["why"];
+  EXPECT_NE(back["why"].get<std::string>().find("recovered at trial 73"), std::string::npos);
+  // And may come again.
+  const auto again = report(lapsed + std::string(11, '1') + "00");
+  EXPECT_EQ(again["state"], "relapsed");
+  EXPECT_EQ(again["relapses"].size(), 2u);
+  EXPECT_EQ(again["relapses"][1]["at_trial"], 75);
 }
 
 TEST(Trainee, NextIsTheScenarioThatMayFailMostAndTheLeastRecentOfEquals) {

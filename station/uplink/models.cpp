@@ -28,10 +28,11 @@ bool is_id(const std::string& id) {
          });
 }
 
-core::Result<std::vector<Offered>> offered(Server& server) {
+/// Nothing from a server that is older than the sending of models.
+core::Result<std::optional<std::vector<Offered>>> offered(Server& server) {
   const Request request{.method = "GET", .path = kPath};
   auto answer = TRY(server.send(request));
-  if (answer.status == 404) return std::vector<Offered>();
+  if (answer.status == 404) return std::optional<std::vector<Offered>>();
   auto json = TRY(json_of(request, answer));
   const core::Error odd{core::Errc::bad_input,
                         "the server's list of models is not what was agreed"};
@@ -47,7 +48,7 @@ core::Result<std::vector<Offered>> offered(Server& server) {
     if (!is_id(read.model.id) || !core::is_sha256(read.sha256)) return odd;
     out.push_back(std::move(read));
   }
-  return out;
+  return std::optional(std::move(out));
 }
 
 core::Result<void> fetch(Server& server, const Offered& one, const fs::path& target) {
@@ -91,10 +92,25 @@ core::Result<void> keep_names(const fs::path& folder, const std::vector<Offered>
   return core::write_json(folder / kNames, list);
 }
 
+/// Removes the versions that are on the disk and no longer offered; returns their names.
+core::Result<std::vector<std::string>> forget_recalled(const fs::path& folder,
+                                                       const std::vector<Offered>& models) {
+  auto known = TRY(kept(folder));
+  std::vector<std::string> out;
+  std::error_code failure;
+  for (const KeptModel& one : known) {
+    const auto is_it = [&](const Offered& other) { return other.model.id == one.id; };
+    if (std::ranges::any_of(models, is_it)) continue;
+    fs::remove(folder / (one.id + ".json"), failure);
+    out.push_back(one.name);
+  }
+  return out;
+}
+
 }  // namespace
 
 core::Json ModelReport::to_json() const {
-  return {{"fetched", fetched}, {"present", present}, {"refused", refused}};
+  return {{"fetched", fetched}, {"present", present}, {"refused", refused}, {"recalled", recalled}};
 }
 
 core::Result<ModelReport> sync_models(Server& server, const fs::path& folder) {
@@ -102,7 +118,8 @@ core::Result<ModelReport> sync_models(Server& server, const fs::path& folder) {
   ModelReport report;
   std::error_code failure;
   fs::create_directories(folder, failure);
-  for (const Offered& one : models) {
+  if (!models) return report;
+  for (const Offered& one : *models) {
     const fs::path target = folder / (one.model.id + ".json");
     const bool here = fs::exists(target, failure);
     auto got = here ? core::Result<void>() : fetch(server, one, target);
@@ -114,8 +131,9 @@ core::Result<ModelReport> sync_models(Server& server, const fs::path& folder) {
     (here ? report.present : report.fetched).push_back(one.model.name);
     TRY(say_there(server, one.model.id));
   }
-  if (models.empty()) return report;
-  TRY(keep_names(folder, models));
+  report.recalled = TRY(forget_recalled(folder, *models));
+  if (models->empty() && report.recalled.empty()) return report;
+  TRY(keep_names(folder, *models));
   return report;
 }
 

@@ -15,12 +15,14 @@ struct KeptModel {
 struct ModelReport {
   std::vector<std::string> fetched;  ///< names
   std::vector<std::string> present;
-  std::vector<std::string> refused;  ///< one line each: name and why
+  std::vector<std::string> refused;   ///< one line each: name and why
+  std::vector<std::string> recalled;  ///< names of versions that were taken back and are gone here
   core::Json to_json() const;
 };
 
 /// Fetches every version that was sent to this station and that `folder` lacks; each is checked
-/// against its SHA-256 before it appears, and the server is told. A server from before models were
+/// against its SHA-256 before it appears, and the server is told. Removes the versions that were
+/// recalled. A server from before models were
 /// sent has none. Errors: the server's, unavailable, io.
 core::Result<ModelReport> sync_models(Server& server, const std::filesystem::path& folder);
 

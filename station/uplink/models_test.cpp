@@ -52,6 +52,17 @@ TEST_F(SyncingModels, KeepsWhatWasSentAndFindsItByNameAndById) {
   EXPECT_EQ(second->present, std::vector<std::string>{"softer bone"});
 }
 
+TEST_F(SyncingModels, ForgetsWhatWasRecalled) {
+  offer(core::sha256(core::bytes_of(kFile)));
+  ASSERT_TRUE(sync_models(server_, root_));
+  put("/api/v1/station/models", R"({"models": []})");
+  const auto report = sync_models(server_, root_);
+  ASSERT_TRUE(report) << report.error().what;
+  EXPECT_EQ(report->recalled, std::vector<std::string>{"softer bone"});
+  EXPECT_FALSE(fs::exists(root_ / (std::string(kId) + ".json")));
+  EXPECT_FALSE(model_named(root_, "softer bone"));
+}
+
 TEST_F(SyncingModels, RefusesAFileThatIsNotWhatWasNamed) {
   offer(std::string(64, 'a'));
   const auto report = sync_models(server_, root_);

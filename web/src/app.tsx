@@ -1,8 +1,8 @@
 /** The whole: the pages of all features, the menu of a role, and what an ended session does to them. */
-import { QueryCache, QueryClient, QueryClientProvider, useQuery } from '@tanstack/react-query';
+import { QueryClient, QueryClientProvider, useQuery } from '@tanstack/react-query';
 import { Suspense, type ReactNode } from 'react';
 import { Link, Redirect, Route, Switch, useLocation } from 'wouter';
-import { ApiError, endSession, sessionQuery } from '@/api';
+import { ApiError, endSession, onSessionEnd, sessionQuery } from '@/api';
 import { Account, SessionGate } from '@/features/session';
 import { type Feature, Notice, Shell, Skeleton, useTitle } from '@/ui';
 import styles from './app.module.css';
@@ -18,11 +18,7 @@ const kPages = kFeatures
 const kMenu = kFeatures.flatMap(({ menu }) => menu).sort((a, b) => a.order - b.order);
 
 export function makeClient(): QueryClient {
-  const onError = (reason: Error) => {
-    if (reason instanceof ApiError && reason.code === 'unauthorised') endSession(client);
-  };
   const client = new QueryClient({
-    queryCache: new QueryCache({ onError }),
     // The server is in the house: whether the browser thinks that there is an Internet says nothing about it.
     defaultOptions: {
       mutations: { networkMode: 'always' },
@@ -37,6 +33,7 @@ export function makeClient(): QueryClient {
       },
     },
   });
+  onSessionEnd(() => endSession(client));
   return client;
 }
 

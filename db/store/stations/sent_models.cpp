@@ -12,6 +12,15 @@ std::optional<std::int64_t> time_or_nothing(const Row& row, std::size_t column) 
   return row.integer(column);
 }
 
+core::Result<void> check_sent(Reading& tx, const std::string& model_id,
+                              const std::string& station_id) {
+  auto sent =
+      TRY(tx.query("select model_id from station_models where station_id = ? and model_id = ?",
+                   {station_id, model_id}));
+  if (!sent.empty()) return {};
+  return core::Error{core::Errc::not_found, "no model " + model_id.substr(0, 32) + " was sent"};
+}
+
 }  // namespace
 
 core::Result<void> send_model(Writing& tx, const std::string& model_id,
@@ -25,6 +34,13 @@ core::Result<void> send_model(Writing& tx, const std::string& model_id,
       tx.query("insert into station_models (station_id, model_id, asked_utc_us, asked_by) values "
                "(?, ?, ?, ?) on conflict (station_id, model_id) do nothing",
                {station_id, model_id, now_utc_us, by}));
+}
+
+core::Result<void> recall_model(Writing& tx, const std::string& model_id,
+                                const std::string& station_id) {
+  TRY(check_sent(tx, model_id, station_id));
+  return done(tx.query("delete from station_models where station_id = ? and model_id = ?",
+                       {station_id, model_id}));
 }
 
 core::Result<std::vector<SentModel>> sent_to(Reading& tx, const std::string& model_id) {
@@ -54,11 +70,7 @@ core::Result<std::vector<ModelVersion>> models_for(Reading& tx, const std::strin
 
 core::Result<void> note_model_there(Writing& tx, const std::string& model_id,
                                     const std::string& station_id, std::int64_t now_utc_us) {
-  auto sent =
-      TRY(tx.query("select model_id from station_models where station_id = ? and model_id = ?",
-                   {station_id, model_id}));
-  if (sent.empty())
-    return core::Error{core::Errc::not_found, "no model " + model_id.substr(0, 32) + " was sent"};
+  TRY(check_sent(tx, model_id, station_id));
   return done(
       tx.query("update station_models set there_utc_us = ? where station_id = ? and model_id = ? "
                "and there_utc_us is null",

@@ -16,6 +16,10 @@ struct SentModel {
 core::Result<void> send_model(Writing& tx, const std::string& model_id,
                               const std::string& station_id, const std::string& by,
                               std::int64_t now_utc_us);
+/// Takes a version back: the station forgets it at its next request. Errors: not_found if it was not
+/// sent to the station.
+core::Result<void> recall_model(Writing& tx, const std::string& model_id,
+                                const std::string& station_id);
 /// Every station that is not revoked, sorted by name, and whether the version was sent to it.
 core::Result<std::vector<SentModel>> sent_to(Reading& tx, const std::string& model_id);
 /// The versions that were sent to a station, oldest first.

@@ -5,6 +5,13 @@
 
 namespace tractus::store {
 
+/// SQL: the name of the account to which the trial `t` was assigned; null for a trial of no
+/// assignment.
+inline constexpr const char* kPersonColumn =
+    "(select pu.name from study_trials pt join study_slots ps on ps.id = pt.slot_id join "
+    "assignment_people pp on pp.study_id = ps.study_id and pp.participant = ps.participant join "
+    "accounts pu on pu.id = pp.account_id where pt.trial_id = t.id)";
+
 /// Columns 0–10 as `summary_from` reads them, of trials t, cases c and stations s.
 inline constexpr const char* kSummaryColumns =
     "t.id, t.case_id, c.title, s.name, t.operator_name, t.simulated, t.started_utc_us, "

@@ -20,6 +20,76 @@ core::Result<void> add_score(Writing& tx, const std::string& trial_id, std::int6
                {trial_id, score.metric_id, position, or_null(score.value), score.note}));
 }
 
+/// " and …" for the trials that `whose` reaches and that are not blind; its values are added.
+std::string reached_sql(const TrialFilter& whose, std::vector<Value>& values) {
+  constexpr const char* kAssigned =
+      "exists (select 1 from study_trials st join study_slots sl on sl.id = st.slot_id join "
+      "assignment_people p on p.study_id = sl.study_id and p.participant = sl.participant ";
+  std::string out = " and not " + blinded_sql();
+  if (!whose.taught_by.empty()) {
+    out += std::string(" and ") + kAssigned +
+           "join cohort_people c on c.account_id = p.account_id and c.part = 'trainee' join "
+           "cohort_people f on f.cohort_id = c.cohort_id and f.part = 'faculty' where st.trial_id "
+           "= t.id and f.account_id = ?)";
+    values.emplace_back(whose.taught_by);
+  }
+  if (!whose.seen_by.empty()) {
+    out += std::string(" and ") + kAssigned +
+           "join assignments a on a.study_id = sl.study_id where st.trial_id = t.id and "
+           "p.account_id = ? and a.release <> 'held')";
+    values.emplace_back(whose.seen_by);
+  }
+  return out;
+}
+
+std::string answer_sql(AnswerFilter answer) {
+  switch (answer) {
+    case AnswerFilter::any:
+      return "";
+    case AnswerFilter::correct:
+      return " and t.correct = 1";
+    case AnswerFilter::incorrect:
+      return " and t.correct = 0";
+    case AnswerFilter::none:
+      return " and t.correct is null";
+  }
+  return "";
+}
+
+/// " and …" for the trials of which a shown text contains `text`, in which % and _ are themselves.
+std::string text_sql(const std::string& text, std::vector<Value>& values) {
+  if (text.empty()) return "";
+  std::string pattern = "%";
+  for (const char c : text) {
+    if (c == '%' || c == '_' || c == '!') pattern += '!';
+    pattern += c;
+  }
+  pattern += '%';
+  std::string out;
+  for (const char* column : {"c.title", "s.name", "t.operator_name", kPersonColumn}) {
+    out += std::string(out.empty() ? " and (" : " or ") + "lower(" + column +
+           ") like lower(?) escape '!'";
+    values.emplace_back(pattern);
+  }
+  return out + ")";
+}
+
+std::string order_sql(TrialOrder order) {
+  switch (order) {
+    case TrialOrder::started:
+      return "t.started_utc_us";
+    case TrialOrder::case_title:
+      return "c.title";
+    case TrialOrder::person:
+      return "coalesce(" + std::string(kPersonColumn) + ", t.operator_name)";
+    case TrialOrder::station:
+      return "s.name";
+    case TrialOrder::duration:
+      return "t.duration_s";
+  }
+  return "t.started_utc_us";
+}
+
 }  // namespace
 
 core::Result<TrialSummary> summary_from(const Row& row) {
@@ -54,12 +124,13 @@ core::Result<std::optional<TrialRecord>> trial_of(Reading& tx, const std::string
   auto rows =
       TRY(tx.query(std::string("select ") + kSummaryColumns +
                        ", t.station_id, t.sha256, t.complete, t.late_ticks, t.not_converged, "
-                       "t.skipped_ticks, t.header, t.events, t.failure, t.coverage" +
-                       kFrom + "where t.id = ?",
+                       "t.skipped_ticks, t.header, t.events, t.failure, t.coverage, " +
+                       kPersonColumn + kFrom + "where t.id = ?",
                    {id}));
   if (rows.empty()) return std::optional<TrialRecord>();
   const Row& row = rows.front();
   auto summary = TRY(summary_from(row));
+  summary.person = row.text_or_null(21).value_or("");
   return std::optional(TrialRecord{.summary = std::move(summary),
                                    .station_id = row.text(11),
                                    .sha256 = row.text(12),
@@ -76,24 +147,37 @@ core::Result<std::optional<TrialRecord>> trial_of(Reading& tx, const std::string
 core::Result<std::vector<TrialSummary>> trials_before(Reading& tx, std::int64_t before_utc_us,
                                                       std::int64_t limit,
                                                       const TrialFilter& whose) {
-  constexpr const char* kAssigned =
-      "exists (select 1 from study_trials st join study_slots sl on sl.id = st.slot_id join "
-      "assignment_people p on p.study_id = sl.study_id and p.participant = sl.participant ";
-  return all_of(
-      tx.query(
-          std::string("select ") + kSummaryColumns + kFrom + "where t.started_utc_us < ? and not " +
-              blinded_sql() + " and (? = '' or " + kAssigned +
-              "join cohort_people c on c.account_id = p.account_id and c.part = 'trainee' join "
-              "cohort_people f on f.cohort_id = c.cohort_id and f.part = 'faculty' where "
-              "st.trial_id = "
-              "t.id and f.account_id = ?)) and (? = '' or " +
-              kAssigned +
-              "join assignments a on a.study_id = sl.study_id where st.trial_id = t.id and "
-              "p.account_id = ? and a.release <> 'held')) order by t.started_utc_us desc, t.id "
-              "desc "
-              "limit ?",
-          {before_utc_us, whose.taught_by, whose.taught_by, whose.seen_by, whose.seen_by, limit}),
-      summary_from);
+  std::vector<Value> values{before_utc_us};
+  const std::string reached = reached_sql(whose, values);
+  values.emplace_back(limit);
+  return all_of(tx.query_with(std::string("select ") + kSummaryColumns + kFrom +
+                                  "where t.started_utc_us < ?" + reached +
+                                  " order by t.started_utc_us desc, t.id desc limit ?",
+                              values),
+                summary_from);
+}
+
+core::Result<FoundTrials> find_trials(Reading& tx, const TrialSearch& search,
+                                      const TrialFilter& whose) {
+  std::vector<Value> values{search.before_utc_us};
+  std::string where = "where t.started_utc_us < ?" + reached_sql(whose, values);
+  where += answer_sql(search.answer);
+  where += text_sql(search.text, values);
+  auto counted = TRY(tx.query_with(std::string("select count(*)") + kFrom + where, values));
+  values.insert(values.end(), {search.limit, search.offset});
+  const std::string way = search.ascending ? " asc" : " desc";
+  auto rows = TRY(tx.query_with(std::string("select ") + kSummaryColumns + ", " + kPersonColumn +
+                                    kFrom + where + " order by " + order_sql(search.order) + way +
+                                    ", t.started_utc_us desc, t.id desc limit ? offset ?",
+                                values));
+  FoundTrials out;
+  out.total = counted.front().count(0);
+  for (const Row& row : rows) {
+    auto summary = TRY(summary_from(row));
+    summary.person = row.text_or_null(11).value_or("");
+    out.trials.push_back(std::move(summary));
+  }
+  return out;
 }
 
 core::Result<void> set_assessment(Writing& tx, const std::string& id,

@@ -95,6 +95,15 @@ Result<http::Response> send(const Call& call) {
   return json_response(sent_json(sent));
 }
 
+Result<http::Response> recall(const Call& call) {
+  auto sent = TRY(
+      call.backend.store.write([&](store::Writing& tx) -> Result<std::vector<store::SentModel>> {
+        TRY(store::recall_model(tx, call.text("id"), call.text("station_id")));
+        return store::sent_to(tx, call.text("id"));
+      }));
+  return json_response(sent_json(sent));
+}
+
 Result<http::Response> for_station(const Call& call) {
   auto models = TRY(call.backend.store.read(
       [&](store::Reading& tx) { return store::models_for(tx, call.caller.id); }));
@@ -188,6 +197,13 @@ std::vector<RouteInfo> sent_models_routes() {
                          "True: the version is sent to every station that is not revoked"))}})}});
   post.who.push_back(Role::technician);
   post.ends = {{"id", Object::model, post.who}, {"/stations/*", Object::station, post.who}};
+  RouteInfo back = lab_route(
+      "DELETE", "models/{id}/stations/{station_id}", "recallModel",
+      "Recall a model version from a station, which forgets the version at its next request",
+      "SentModel", recall);
+  back.who.push_back(Role::technician);
+  back.parameters.push_back(path_text("station_id", "Id of the station"));
+  back.ends = {{"id", Object::model, back.who}, {"station_id", Object::station, back.who}};
   RouteInfo list = sent_model_route("GET", "", "stationModels",
                                     "List the model versions that were sent to the calling station",
                                     "StationModels", for_station);
@@ -202,7 +218,10 @@ std::vector<RouteInfo> sent_models_routes() {
                 array(ref("StationModel"),
                       "Model versions, sorted by the time when they were sent, oldest first")}})}};
   return {
-      where, post, list,
+      where,
+      post,
+      back,
+      list,
       sent_model_route(
           "GET", "/{id}", "stationModelFile",
           "Read the file of a model version that was sent to the calling station, byte for byte",

@@ -63,6 +63,21 @@ TEST_F(SentModels, StayThereWhenTheyAreSentAgain) {
   EXPECT_EQ(state_of("s1"), "there");
 }
 
+TEST_F(SentModels, AreNoLongerThereForAStationOnceRecalled) {
+  ASSERT_EQ(send("rex", {{"all", true}}).status, 200);
+  ASSERT_EQ(at_station("POST", "/m-one/there").status, 204);
+  const auto recall = [&](const std::string& who, const std::string& tail) {
+    return ask(request("DELETE", "/api/v1/lab/models/" + tail, as(who))).status;
+  };
+  EXPECT_EQ(recall("fay", "m-one/stations/s1"), 403);
+  EXPECT_EQ(recall("rex", "m-two/stations/s1"), 404);
+  EXPECT_EQ(recall("rex", "m-one/stations/s1"), 200);
+  EXPECT_EQ(state_of("s1"), "not_sent");
+  EXPECT_TRUE(json(at_station("GET", ""))["models"].empty());
+  EXPECT_EQ(at_station("GET", "/m-one").status, 404);
+  EXPECT_EQ(recall("rex", "m-one/stations/s1"), 404) << "it is recalled already";
+}
+
 TEST_F(SentModels, AreNotForAStationThatTheyWereNotSentTo) {
   EXPECT_EQ(at_station("GET", "/m-two").status, 404);
   EXPECT_EQ(at_station("POST", "/m-two/there").status, 404);

@@ -225,7 +225,7 @@ Json trainee_json(const Programme& of, std::size_t trainee) {
   for (const auto& trial : of.trials[trainee])
     confidence.push_back(confidence_of(*of.backend, trial.summary.id));
   Json out = short_json(of, trainee, report);
-  for (const char* key : {"competent_at_trial", "relapse_at_trial", "scenarios", "scores"})
+  for (const char* key : {"competent_at_trial", "relapses", "scenarios", "scores"})
     out[key] = report[key];
   out["rule"] = rule;
   out["attempts"] = attempts_json(of, trainee, standing, confidence);

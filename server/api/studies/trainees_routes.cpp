@@ -51,7 +51,8 @@ std::vector<Field> standing_fields() {
       {"wilson_high", number("1", "Upper end of the 95 % Wilson interval of the share, 0 to 1")},
       {"state",
        one_of({"learning", "competent", "relapsed"},
-              "State of the trainee: LC-CUSUM signals competence, then CUSUM signals relapse")},
+              "State of the trainee: LC-CUSUM signals competence, then CUSUM signals relapse, "
+              "which ends where its sum is back at 0")},
       {"certified", truth("True if the trainee can be certified as competent")},
       {"why", text("Reason why the trainee can or cannot be certified")},
       {"next",
@@ -87,10 +88,7 @@ std::vector<NamedSchema> one_schemas() {
                     nullable(integer("1",
                                      "Number of the trial at which competence was signalled, "
                                      "counted from 1; null if it was not signalled"))});
-  fields.push_back(
-      {"relapse_at_trial", nullable(integer("1",
-                                            "Number of the trial at which relapse was signalled, "
-                                            "counted from 1; null if it was not signalled"))});
+  fields.push_back({"relapses", array(ref("Relapse"), "Relapses, in order of time")});
   fields.push_back(
       {"scenarios", array(anything("Share of correct answers on one scenario, with its interval"),
                           "Results by scenario")});
@@ -102,6 +100,14 @@ std::vector<NamedSchema> one_schemas() {
        array(ref("CalibrationBin"),
              "Share of correct answers by stated confidence, in ascending order of confidence")});
   return {
+      {"Relapse",
+       object({{"at_trial", integer("1",
+                                    "Number of the trial at which relapse was signalled, "
+                                    "counted from 1")},
+               {"recovered_at_trial",
+                nullable(integer("1",
+                                 "Number of the trial at which the CUSUM sum was back at 0, "
+                                 "counted from 1; null if it was not yet"))}})},
       {"Attempt",
        object({{"number", integer("1", "Number of the trial, counted from 1")},
                {"trial", text("Id of the trial")},

@@ -80,6 +80,7 @@ core::Json summary_json(const store::TrialSummary& trial) {
           {"case_title", trial.case_title},
           {"station", trial.station},
           {"operator_name", trial.operator_name},
+          {"person", trial.person},
           {"simulated", trial.simulated},
           {"started_utc_us", trial.started_utc_us},
           {"duration_s", trial.duration_s},

@@ -23,6 +23,8 @@ std::vector<Field> summary_fields() {
       {"station", text("Name of the station")},
       {"operator_name",
        text("Name of the person who did the trial; for a simulated hand a name that states so")},
+      {"person", text("Name of the account to which the trial was assigned; empty if it belongs to "
+                      "no assignment")},
       {"simulated", truth("True if a simulated device replaced hand and machine")},
       {"started_utc_us", integer("us", "Start of the trial, in microseconds since 1970-01-01 UTC")},
       {"duration_s", number("s", "Time from the first to the last sample, in seconds")},
@@ -143,8 +145,9 @@ std::vector<schema::Field> metric_fields() {
 std::vector<NamedSchema> trial_schemas() {
   return {
       {"TrialSummary", object(summary_fields())},
-      {"TrialList", object({{"trials", array(ref("TrialSummary"), "Trials, newest first")},
-                            {"more", truth("True if older trials exist")}})},
+      {"TrialList", object({{"trials", array(ref("TrialSummary"), "Trials in the order asked for")},
+                            {"total", integer("1", "Number of trials that the search matches")},
+                            {"more", truth("True if trials follow those of the answer")}})},
       {"Trial", trial_schema()},
       {"TrialEvent",
        object({{"t_s", number("s", "Time of the event, in seconds since the start of the trial")},

@@ -9,6 +9,7 @@
 #include "core/file.hpp"
 #include "server/api/people/people_test_support.hpp"
 #include "tests/support/dicom_writer.hpp"
+#include "tests/support/nifti_file.hpp"
 #include "volume/volume_file.hpp"
 
 namespace tractus {
@@ -154,6 +155,23 @@ TEST_F(Volumes, ThePreviewIsTheMeanOfBlocks) {
   EXPECT_EQ(block.header("X-Dims"), "10,8,6");
   // Block (1, 2, 3): i 2 … 3, j 4 … 5, k 6 … 7: 100 · 2.5 + 10 · 4.5 + 6.5 = 301.5.
   EXPECT_NEAR(static_cast<unsigned char>(text(block)[(3 * 8 + 2) * 10 + 1]), 30.15, 0.51);
+}
+
+TEST_F(Volumes, AZippedNiftiIsRead) {
+  const core::Bytes nifti = test_support::plain_nifti().bytes;
+  const std::string file(core::text_of(nifti));
+  const std::string id = brought(zip_of({{"Erika/ct.nii", file}, {"Erika/readme.txt", "Erika"}}));
+  const core::Json shown = json(get("fay", "/volumes/" + id));
+  EXPECT_EQ(shown["dims"], core::Json({5, 4, 3}));  // of nifti_file.hpp
+  EXPECT_EQ(text(get("fay", "/volumes/" + id)).find("Erika"), std::string::npos);
+}
+
+TEST_F(Volumes, AZipOfTwoVolumesIsRefused) {
+  const core::Bytes nifti = test_support::plain_nifti().bytes;
+  const std::string file(core::text_of(nifti));
+  const auto answer = bring("fay", zip_of({{"a.nii", file}, {"b.nii", file}}));
+  EXPECT_EQ(answer.status, 400) << text(answer);
+  EXPECT_NE(text(answer).find("several volumes"), std::string::npos) << text(answer);
 }
 
 TEST_F(Volumes, RubbishIsRefusedAndLeavesNothing) {

@@ -129,3 +129,20 @@ describe('a preview', () => {
     },
   );
 });
+
+describe('a message about a field of the body', () => {
+  it.each([
+    ['body/pin: 4 to 12 digits are expected', 'PIN: 4 to 12 digits are expected'],
+    ['body: /name: there is no account with this name', 'Name: there is no account with this name'],
+    [
+      '/cases/0/case: either the id of a case or a scenario is expected',
+      'Cases 1 case: either the id of a case or a scenario is expected',
+    ],
+    ['body: /due_utc_us: a whole number is expected', 'Due: a whole number is expected'],
+    ['body: is no JSON', 'is no JSON'],
+    ['trials/a.csv:12: column 3 is no number', 'trials/a.csv:12: column 3 is no number'],
+    ['the name is taken', 'the name is taken'],
+  ])('"%s" names the field as a person does', (message, shown) => {
+    expect(withoutPointer(message)).toBe(shown);
+  });
+});

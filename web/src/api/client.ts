@@ -1,8 +1,11 @@
 /** One way to the server: same origin, cookie, time-out, and every failure as an ApiError with a sentence for a person. */
 import * as v from 'valibot';
+import { nextSignIn } from './session-end';
 
 const kRoot = '/api/v1';
 const kTimeout_ms = 20_000;
+/** Below it a 401 is an answer about the credentials that were sent. */
+const kSession = '/session';
 
 export type ApiErrorCode =
   | 'unauthorised'
@@ -66,7 +69,40 @@ function content({ body, text, bytes: raw }: Request): { type: string; sent: str
   return body === undefined ? null : { type: 'application/json', sent: JSON.stringify(body) };
 }
 
+/** A session that ended is no failure of what was asked: once the same person is back, it is asked again. */
 async function send(path: string, request: Request): Promise<Response> {
+  try {
+    return await sendOnce(path, request);
+  } catch (reason) {
+    const ended = reason instanceof ApiError && reason.code === 'unauthorised' && !path.startsWith(kSession);
+    if (!ended) throw reason;
+    if (await nextSignIn(request.signal)) return send(path, request);
+    throw new ApiError('refused', 'Another person has signed in.');
+  }
+}
+
+/** Abbreviations in the names of fields, as a person writes them. */
+const kFieldWords: Record<string, string | undefined> = { pin: 'PIN', csv: 'CSV', id: 'ID', utc: '', us: '' };
+
+/** "body/pin: 4 to 12 digits are expected" as "PIN: 4 to 12 digits are expected"; other messages as they are. */
+export function withoutPointer(message: string): string {
+  const [, pointer, rest] = /^(?:body(?:: )?)?((?:\/[\w*-]+)+): (.+)$/s.exec(message) ?? [];
+  if (pointer === undefined || rest === undefined) return message.replace(/^body: /, '');
+  const names = pointer.split('/').filter((part) => part !== '' && part !== '*');
+  const words = names.map((part) =>
+    /^\d+$/.test(part)
+      ? `${Number(part) + 1}`
+      : part
+          .split('_')
+          .map((word) => kFieldWords[word] ?? word)
+          .filter(Boolean)
+          .join(' '),
+  );
+  const name = words.join(' ');
+  return `${name.charAt(0).toUpperCase()}${name.slice(1)}: ${rest}`;
+}
+
+async function sendOnce(path: string, request: Request): Promise<Response> {
   const { method = 'GET', timeout_ms = kTimeout_ms, signal } = request;
   const payload = content(request);
   const headers = new Headers({ Accept: 'application/json' });
@@ -91,7 +127,9 @@ async function send(path: string, request: Request): Promise<Response> {
   }
   if (response.ok) return response;
   const failure = v.safeParse(errorSchema, await response.json().catch(() => undefined));
-  const text = failure.success ? failure.output.error : `The server answered with status ${response.status}.`;
+  const text = failure.success
+    ? withoutPointer(failure.output.error)
+    : `The server answered with status ${response.status}.`;
   const needsCode = failure.success && failure.output.code === 'code_needed';
   const retryAfter = response.headers.get('Retry-After');
   throw new ApiError(

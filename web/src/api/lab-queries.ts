@@ -151,6 +151,12 @@ export const sendModel = (id: string, stations: readonly string[] | null) =>
     body: stations === null ? { all: true } : { stations },
   });
 
+/** Takes a version back from a station, which forgets it at its next request. */
+export const recallModel = (id: string, station_id: string) =>
+  requestJson(address('/api/v1/lab/models/{id}/stations/{station_id}', { id, station_id }), sentModelSchema, {
+    method: 'DELETE',
+  });
+
 const link = (path: string) => `/api/v1${path}`;
 export const reportAddress = (id: string) => link(address('/api/v1/lab/runs/{id}/report', { id }));
 export const betterModelAddress = (id: string) => link(address('/api/v1/lab/runs/{id}/model', { id }));

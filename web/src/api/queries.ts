@@ -1,5 +1,5 @@
 /** All queries, one key each, so that pages share answers. */
-import { infiniteQueryOptions, queryOptions, type QueryClient } from '@tanstack/react-query';
+import { keepPreviousData, queryOptions, type QueryClient } from '@tanstack/react-query';
 import { address } from './address';
 import { ApiError, requestJson, bytes, request } from './client';
 import { parsePreview } from './preview';
@@ -15,7 +15,6 @@ import {
 
 const kAssessing_ms = 2_000;
 const kIdle_ms = 15_000;
-const kPage = 50;
 /** Voxels along the longest side; the box round a tract is slender, so that it stays small. */
 const kPreview = 128;
 
@@ -54,20 +53,29 @@ export const signIn = (name: string, password: string, code?: string) =>
 
 export const signOut = () => request(address('/api/v1/session', {}), { method: 'DELETE' });
 
-/** Newest first; refetched while a trial is being assessed, and from time to time for new trials. */
-export const trialsQuery = infiniteQueryOptions({
-  queryKey: ['trials'],
-  queryFn: ({ pageParam, signal }) => {
-    const before = pageParam === null ? {} : { before_utc_us: pageParam };
-    return requestJson(address('/api/v1/trials', {}, { limit: kPage, ...before }), trialPageSchema, { signal });
-  },
-  initialPageParam: null as number | null,
-  getNextPageParam: (last) => (last.more ? (last.trials.at(-1)?.started_utc_us ?? null) : null),
-  refetchInterval: (query) => {
-    const assessing = query.state.data?.pages.some((page) => page.trials.some((trial) => trial.state === 'assessing'));
-    return assessing ? kAssessing_ms : kIdle_ms;
-  },
-});
+/** What a list of trials is narrowed to, and its order. */
+export interface TrialSearch {
+  readonly search: string;
+  readonly answer: 'any' | 'correct' | 'incorrect' | 'none';
+  readonly sort: 'started' | 'case' | 'person' | 'station' | 'duration';
+  readonly order: 'ascending' | 'descending';
+  /** From 0. */
+  readonly page: number;
+}
+export const kTrialsPerPage = 50;
+
+/** Searched and sorted by the server; refetched while a trial is being assessed, and from time to time for new trials. */
+export const trialsQuery = ({ page, ...search }: TrialSearch) =>
+  queryOptions({
+    queryKey: ['trials', search, page],
+    queryFn: ({ signal }) => {
+      const query = { ...search, limit: kTrialsPerPage, offset: page * kTrialsPerPage };
+      return requestJson(address('/api/v1/trials', {}, query), trialPageSchema, { signal });
+    },
+    placeholderData: keepPreviousData,
+    refetchInterval: (query) =>
+      query.state.data?.trials.some((trial) => trial.state === 'assessing') ? kAssessing_ms : kIdle_ms,
+  });
 
 export const trialQuery = (id: string) =>
   queryOptions({
@@ -123,7 +131,7 @@ export const previewQuery = (caseId: string) =>
     staleTime: Infinity,
   });
 
-/** A 401 anywhere means that the session has ended: the pages give way to the sign-in, at the same address. */
+/** The session has ended: the sign-in is shown above the page, which stays as it was. */
 export function endSession(client: QueryClient): void {
   client.setQueryData(sessionQuery.queryKey, null);
 }

@@ -23,6 +23,8 @@ export const trialSummarySchema = v.object({
   case_title: v.string(),
   station: v.string(),
   operator_name: v.string(),
+  /** Name of the account to which the trial was assigned; empty without an assignment. */
+  person: v.string(),
   simulated: v.boolean(),
   started_utc_us: inUtc,
   duration_s: inSeconds,
@@ -31,7 +33,11 @@ export const trialSummarySchema = v.object({
   correct: v.nullable(v.boolean()),
 });
 
-export const trialPageSchema = v.object({ trials: v.array(trialSummarySchema), more: v.boolean() });
+export const trialPageSchema = v.object({
+  trials: v.array(trialSummarySchema),
+  total: v.number(),
+  more: v.boolean(),
+});
 
 export const metricSchema = v.object({
   id: v.string(),
@@ -99,6 +105,8 @@ export const trialSchema = v.object({
   case_title: v.string(),
   station: v.string(),
   operator_name: v.string(),
+  /** Name of the account to which the trial was assigned; empty without an assignment. */
+  person: v.string(),
   simulated: v.boolean(),
   rig: v.picklist(['palpation', 'probing']),
   device: v.string(),
@@ -167,6 +175,9 @@ export const forceDepthSchema = v.pipe(
 
 export type Session = v.InferOutput<typeof sessionSchema>;
 export type TrialState = v.InferOutput<typeof trialStateSchema>;
+/** The person who did a trial, by the name of the account where it is known. */
+export const personOf = ({ person, operator_name }: Pick<TrialSummary, 'person' | 'operator_name'>): string =>
+  person === '' ? operator_name : person;
 export type TrialSummary = v.InferOutput<typeof trialSummarySchema>;
 export type TrialPage = v.InferOutput<typeof trialPageSchema>;
 export type Metric = v.InferOutput<typeof metricSchema>;

@@ -37,7 +37,7 @@ export const traineeSchema = v.object({
   ...standingFields,
   rule: ruleSchema,
   competent_at_trial: v.nullable(count),
-  relapse_at_trial: v.nullable(count),
+  relapses: v.array(v.object({ at_trial: count, recovered_at_trial: v.nullable(count) })),
   scenarios: v.array(
     v.object({
       scenario: v.string(),

@@ -1,6 +1,7 @@
 export { kSides, type Side, type WallBins } from './coverage';
 export { type Bone } from './depth-bone';
 export { DepthChart, kDepthHeight_px } from './depth-chart';
+export { type ChartData } from './chart-files';
 export { makeCursor, type Cursor } from './cursor';
 export { whole, type Range } from './range';
 export { PaintedTract } from './painted-tract';

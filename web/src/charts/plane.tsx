@@ -1,6 +1,7 @@
 import { scaleLinear, scaleLog } from 'd3-scale';
 import { useId, useRef, type ReactNode } from 'react';
 import { tickLabels } from '@/units';
+import { kChartFiles, saveChart, type ChartData } from './chart-files';
 import { ticksOf, type Tick } from './depth-scale';
 import styles from './plane.module.css';
 import { useWidth } from './use-width';
@@ -27,6 +28,8 @@ interface Props {
   readonly height_px?: number;
   /** The picture in words. */
   readonly summary: string;
+  /** Offers the chart as files. */
+  readonly data?: ChartData;
   readonly children: (places: Places) => ReactNode;
 }
 
@@ -61,7 +64,7 @@ export function ticks(axis: PlaneAxis, most: number): readonly Tick[] {
 export const mostTicks = (height_px: number) => Math.max(2, Math.floor((height_px - kTop - kBottom) / 22));
 
 /** Two axes, and what is drawn between them: small statistics that are read, not panned. */
-export function Plane({ across, up, height_px = 220, summary, children }: Props) {
+export function Plane({ across, up, height_px = 220, summary, data, children }: Props) {
   const place = useRef<HTMLDivElement>(null);
   const width = useWidth(place);
   const id = useId();
@@ -101,6 +104,23 @@ export function Plane({ across, up, height_px = 220, summary, children }: Props)
           </svg>
         )}
       </div>
+      {data ? (
+        <div className={styles.files} role="group" aria-label={`Download the chart: ${data.name}`}>
+          {kChartFiles.map((kind) => (
+            <button
+              key={kind}
+              type="button"
+              aria-label={`${kind} of ${data.name}`}
+              onClick={() => {
+                const svg = place.current?.querySelector('svg');
+                if (svg) void saveChart(kind, svg, data);
+              }}
+            >
+              {kind}
+            </button>
+          ))}
+        </div>
+      ) : null}
     </figure>
   );
 }

@@ -100,3 +100,23 @@ it('sorts by what a row says now, not by what it said before', async () => {
   rerender(shown([{ name: 'b', trials: 1 }, ...kPeople.slice(2)]));
   expect(names()).toEqual(['b', 'T1', 'T2']);
 });
+
+it('keeps filter, order and page in the address when it is told to', async () => {
+  window.history.replaceState(null, '', '/people?study=a&find=t&sort=0down');
+  render(
+    <DataTable
+      caption="People"
+      rows={kPeople}
+      keyOf={({ name }) => name}
+      empty="Nobody."
+      columns={kColumns}
+      address=""
+      filter={{ label: 'Filter by name', text: ({ name }) => name }}
+    />,
+  );
+  expect(names()).toEqual(['T2', 'T1']);
+  await press('Name'); // from down to none
+  await userEvent.type(screen.getByRole('searchbox'), '1');
+  expect(window.location.search).toBe('?study=a&find=t1');
+  window.history.replaceState(null, '', '/');
+});

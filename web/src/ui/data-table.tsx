@@ -1,10 +1,8 @@
 import {
   columnFilteringFeature,
   createFilteredRowModel,
-  createPaginatedRowModel,
   createSortedRowModel,
   globalFilteringFeature,
-  rowPaginationFeature,
   rowSortingFeature,
   sortFn_alphanumeric,
   sortFn_text,
@@ -12,12 +10,13 @@ import {
   useTable,
 } from '@tanstack/react-table';
 import type { ColumnDef } from '@tanstack/react-table';
-import { useState, type ReactNode } from 'react';
+import type { ReactNode } from 'react';
 import { formatCount } from '@/units';
 import { Button } from './button';
 import styles from './data-table.module.css';
 import { Field } from './field';
 import { Table, type Column, type TableProps } from './table';
+import { useTableState } from './table-state';
 
 /** What rows are sorted by: text, a number, or nothing, which comes last. */
 type Value = string | number | boolean | null | undefined;
@@ -36,6 +35,8 @@ interface Props<Row> extends Omit<TableProps<Row>, 'columns'> {
   /** A field that narrows the rows to those whose text contains what is typed. */
   readonly filter?: { readonly label: string; readonly text: (row: Row) => string };
   readonly pageSize?: number;
+  /** Keeps filter, order and page in the address; what their names begin with: "" for the only such table of a page. */
+  readonly address?: string;
   /** The server hands out rows part by part, so there are no pages here; true: it has more of them. */
   readonly partial?: boolean;
   /** Stands below in place of the buttons for the pages. */
@@ -52,10 +53,8 @@ const features = tableFeatures({
   rowSortingFeature,
   columnFilteringFeature,
   globalFilteringFeature,
-  rowPaginationFeature,
   sortedRowModel: createSortedRowModel(),
   filteredRowModel: createFilteredRowModel(),
-  paginatedRowModel: createPaginatedRowModel(),
   sortFns: { alphanumeric: sortFn_alphanumeric, text: sortFn_text },
 });
 
@@ -64,7 +63,7 @@ const kSigns = { ascending: '▲', descending: '▼', none: '↕' } as const;
 const titleOf = <Row,>({ title, name }: DataColumn<Row>) => title ?? (typeof name === 'string' ? name : '');
 
 /** A column's name as the button that sorts by it; where the name is a term with its definition, the button stands beside it. */
-function Head<Row>({
+export function SortHead<Row>({
   column,
   sorted,
   onPress,
@@ -92,7 +91,7 @@ function Head<Row>({
   );
 }
 
-function Pages({
+export function Pages({
   label,
   page,
   size,
@@ -129,13 +128,14 @@ export function DataTable<Row>({
   order,
   filter,
   pageSize: most = 50,
+  address,
   partial,
   below,
   empty,
   ...rest
 }: Props<Row>) {
-  const [page, setPage] = useState(0);
-  const [typed, setTyped] = useState('');
+  const [state, setState] = useTableState(address);
+  const { typed, sort, page } = state;
   const pageSize = partial === undefined ? most : Number.MAX_SAFE_INTEGER;
   // The lines hold the values of now: what a column sorts by may come from another answer than the rows.
   const lines = (rows ?? []).map((row) => ({
@@ -156,23 +156,28 @@ export function DataTable<Row>({
       })),
       { id: 'text', accessorFn: ({ text }) => text },
     ],
-    state: { pagination: { pageIndex: page, pageSize }, globalFilter: typed.trim() },
+    state: {
+      globalFilter: typed.trim(),
+      sorting: sort && sort.column < columns.length ? [{ id: String(sort.column), desc: sort.down }] : [],
+    },
+    onSortingChange: (change) => {
+      const was = sort ? [{ id: String(sort.column), desc: sort.down }] : [];
+      const [next] = typeof change === 'function' ? change(was) : change;
+      setState({ ...state, sort: next ? { column: Number(next.id), down: next.desc } : null, page: 0 });
+    },
     autoResetAll: false,
   });
-  const last = Math.max(table.getPageCount() - 1, 0);
-  if (page > last) setPage(last);
-  const found = table.getPrePaginatedRowModel().rows.length;
-  const [sorting] = table.state.sorting;
-  const sortedBy = sorting && columns[Number(sorting.id)];
+  const matching = table.getRowModel().rows;
+  const found = matching.length;
+  const last = Math.max(Math.ceil(found / pageSize) - 1, 0);
+  const shown = Math.min(page, last); // rows may have gone since the page was turned
+  const sortedBy = sort ? columns[sort.column] : undefined;
 
   const headed = columns.map((column, i): Column<Row> => {
     if (!column.by) return column;
-    const sorted = column !== sortedBy ? undefined : sorting?.desc ? 'descending' : 'ascending';
-    const press = () => {
-      table.getColumn(String(i))?.toggleSorting();
-      setPage(0);
-    };
-    return { ...column, sorted, name: <Head column={column} sorted={sorted} onPress={press} /> };
+    const sorted = column !== sortedBy ? undefined : sort?.down ? 'descending' : 'ascending';
+    const press = () => table.getColumn(String(i))?.toggleSorting();
+    return { ...column, sorted, name: <SortHead column={column} sorted={sorted} onPress={press} /> };
   });
   const ordered = sortedBy ? `sorted by ${titleOf(sortedBy)}` : order;
   return (
@@ -185,10 +190,7 @@ export function DataTable<Row>({
             placeholder={filter.label}
             type="search"
             value={typed}
-            onChange={(event) => {
-              setTyped(event.target.value);
-              setPage(0);
-            }}
+            onChange={(event) => setState({ ...state, typed: event.target.value, page: 0 })}
           />
         </div>
       ) : null}
@@ -199,12 +201,18 @@ export function DataTable<Row>({
         {...rest}
         columns={headed}
         caption={ordered === undefined ? caption : `${caption}, ${ordered}`}
-        rows={rows && table.getRowModel().rows.map(({ original }) => original.row)}
+        rows={rows && matching.slice(shown * pageSize, (shown + 1) * pageSize).map(({ original }) => original.row)}
         empty={rows?.length === 0 ? empty : 'No rows match.'}
       />
       {below ??
         (last > 0 ? (
-          <Pages label={`Pages: ${caption}`} page={page} size={pageSize} of={found} onPage={setPage} />
+          <Pages
+            label={`Pages: ${caption}`}
+            page={shown}
+            size={pageSize}
+            of={found}
+            onPage={(next) => setState({ ...state, page: next })}
+          />
         ) : null)}
     </div>
   );

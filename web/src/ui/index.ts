@@ -3,7 +3,7 @@ export { Badge, type Tone } from './badge';
 export { Bar } from './bar';
 export { Button } from './button';
 export { Card } from './card';
-export { DataTable, type DataColumn } from './data-table';
+export { DataTable, Pages, SortHead, type DataColumn } from './data-table';
 export { ReasonDialog } from './dialog';
 export { Facts, type Fact } from './facts';
 export { Field } from './field';

@@ -1,4 +1,5 @@
 import type { MouseEvent, ReactNode } from 'react';
+import { timeZone } from '@/units';
 import { Button } from './button';
 import styles from './shell.module.css';
 import { setTheme, useTheme, type Theme } from './theme';
@@ -47,6 +48,7 @@ export function Shell({ account, home, children }: Props) {
       <main id="content" tabIndex={-1} className={styles.main}>
         {children}
       </main>
+      <footer className={styles.footer}>Times are in {timeZone()}.</footer>
     </>
   );
 }

@@ -110,7 +110,19 @@ export function formatBytes(bytes: number): string {
 
 /** In the reader's own time zone: "21 Nov 2025, 05:35". */
 export const formatDateTime = (value: UtcMicroseconds) => kDateTime.format(new Date(value / 1000));
+const kDate = new Intl.DateTimeFormat('en-GB', { dateStyle: 'medium' });
+/** "21 Nov 2025". */
+export const formatDate = (value: UtcMicroseconds) => kDate.format(new Date(value / 1000));
 export const formatDateTimeLong = (value: UtcMicroseconds) => kSeconds.format(new Date(value / 1000));
+/** The reader's own time zone, in which times are shown: "Europe/Berlin, UTC+2". */
+export function timeZone(now = new Date()): string {
+  const name = Intl.DateTimeFormat().resolvedOptions().timeZone;
+  const ahead_min = -now.getTimezoneOffset();
+  if (ahead_min === 0) return name === 'UTC' ? name : `${name}, UTC`;
+  const hours = Math.floor(Math.abs(ahead_min) / 60),
+    minutes = Math.abs(ahead_min) % 60;
+  return `${name}, UTC${ahead_min > 0 ? '+' : kMinus}${hours}${minutes === 0 ? '' : `:${String(minutes).padStart(2, '0')}`}`;
+}
 export const isoDateTime = (value: UtcMicroseconds) => new Date(value / 1000).toISOString();
 
 const kClock = new Intl.DateTimeFormat('en-GB', {

@@ -1,7 +1,7 @@
 import { describe, expect, it } from 'vitest';
 import type { MetricFacts } from '@/api';
 import { tableOf } from '@/api/cohort-table';
-import { columnName, defaultPredictor, endpointsOf } from './columns';
+import { columnName, defaultPredictor, endpointsFor, endpointsOf, predictorsFor, startFor } from './columns';
 import { kMethods } from './methods';
 import { kBlankPlan, planOf } from './plan-draft';
 import { cell } from './report-view';
@@ -58,6 +58,26 @@ describe('the columns', () => {
   it('begin with the predictor that most rows have', () => {
     expect(defaultPredictor(table, 'operation_time')).toBe('number');
     expect(defaultPredictor(tableOf('trial,operation_time\na,20\n'), 'operation_time')).toBe('1');
+  });
+});
+
+describe('the start of a method', () => {
+  // Two trials have a level, none of them a path; all have a rig.
+  const table = tableOf(
+    'trial,level,number,rig,correct,path,time\na,novice,1,probing,1,,20\nb,senior,2,probing,0,,30\nc,,3,palpation,1,0.2,40\nd,,4,palpation,,0.3,50\n',
+  );
+
+  it('offers groups to a comparison of groups, and yes or no to a logistic regression', () => {
+    expect(predictorsFor(table, 'anova').map(({ name }) => name)).toEqual(['level', 'rig']);
+    expect(predictorsFor(table, 'ols').map(({ name }) => name)).toEqual(['level', 'number', 'rig']);
+    expect(endpointsFor(table, 'logistic').map(({ name }) => name)).toEqual(['correct']);
+  });
+
+  it('keeps what was chosen where there are rows, and else takes what has most', () => {
+    expect(startFor(table, 'anova', 'time', 'level')).toEqual(['time', 'level']);
+    expect(startFor(table, 'anova', 'path', 'level')).toEqual(['path', 'rig']);
+    expect(startFor(table, 'anova', 'time', 'number')).toEqual(['time', 'rig']);
+    expect(startFor(table, 'logistic', 'time', 'level')).toEqual(['correct', 'level']);
   });
 });
 

@@ -1,8 +1,9 @@
 import { useState } from 'react';
 import type { CohortTable, MetricFacts } from '@/api';
 import { Button, Field, Select } from '@/ui';
+import { formatCount } from '@/units';
 import styles from './analysis.module.css';
-import { columnName, defaultPredictor, endpointsOf, predictorsOf } from './columns';
+import { columnName, defaultPredictor, endpointsFor, endpointsOf, predictorsFor, rowsWith, startFor } from './columns';
 import { kMethods, type Method } from './methods';
 import type { Question } from './plan-draft';
 
@@ -26,12 +27,13 @@ const kFirst: Method = {
 
 /** An analysis: endpoint, predictor and method. */
 export function QuestionForm({ table, metrics, action, busy, planned = false, onAsk }: Props) {
-  const endpoints = endpointsOf(table);
-  const predictors = predictorsOf(table);
   const [methodId, setMethod] = useState('lmm');
-  const [endpoint, setEndpoint] = useState(
-    endpoints.find(({ name }) => name === 'operation_time')?.name ?? endpoints[0]?.name ?? '',
-  );
+  const endpoints = endpointsFor(table, methodId);
+  const predictors = predictorsFor(table, methodId);
+  const [endpoint, setEndpoint] = useState(() => {
+    const all = endpointsOf(table);
+    return all.find(({ name }) => name === 'operation_time')?.name ?? all[0]?.name ?? '';
+  });
   const [by, setBy] = useState(() => defaultPredictor(table, endpoint));
   const [own, setOwn] = useState<string | null>(null);
   const [primary, setPrimary] = useState(true);
@@ -43,6 +45,15 @@ export function QuestionForm({ table, metrics, action, busy, planned = false, on
       set(value);
       setOwn(null);
     };
+  /** What the method and the endpoint cannot have is replaced by what they can. */
+  const start = (nextMethod: string, nextEndpoint: string) => {
+    const [end, predictor] = startFor(table, nextMethod, nextEndpoint, by);
+    setMethod(nextMethod);
+    setEndpoint(end);
+    setBy(predictor);
+    setOwn(null);
+  };
+  const usable = rowsWith(table, endpoint, method.id === 'describe' ? '1' : by);
   const question = `${columnName(endpoint, metrics)}${method.id === 'describe' ? '' : ` by ${columnName(by, metrics).toLowerCase()}`}`;
   return (
     <div className={styles.stack}>
@@ -50,7 +61,7 @@ export function QuestionForm({ table, metrics, action, busy, planned = false, on
         <Select
           label="Endpoint"
           value={endpoint}
-          onChange={(event) => change(setEndpoint)(event.target.value)}
+          onChange={(event) => start(methodId, event.target.value)}
           options={endpoints.map(({ name }) => ({ value: name, text: columnName(name, metrics) }))}
         />
         <Select
@@ -66,11 +77,16 @@ export function QuestionForm({ table, metrics, action, busy, planned = false, on
         <Select
           label="Method"
           value={methodId}
-          onChange={(event) => change(setMethod)(event.target.value)}
+          onChange={(event) => start(event.target.value, endpoint)}
           options={kMethods.map(({ id, name }) => ({ value: id, text: name }))}
         />
       </div>
-      <p className={styles.muted}>{method.description}</p>
+      <p className={styles.muted}>
+        {method.description}{' '}
+        {usable === 0
+          ? 'No trial has both endpoint and predictor: choose another predictor.'
+          : `${formatCount(usable)} of ${formatCount(table.rows.length)} trials have the values that it needs.`}
+      </p>
       <div className={styles.ask}>
         <Field
           label="Formula (editable)"
@@ -86,7 +102,7 @@ export function QuestionForm({ table, metrics, action, busy, planned = false, on
         ) : null}
         <Button
           look="solid"
-          disabled={busy || endpoint === ''}
+          disabled={busy || endpoint === '' || (own === null && usable === 0)}
           onClick={() => onAsk({ method: method.id, formula, question, primary })}
         >
           {busy ? 'Starting…' : action}

@@ -24,6 +24,11 @@ function Forest({ tests }: { readonly tests: readonly PlannedTest[] }) {
       across={{ title: 'effect with its 95 % interval', from: least - margin, to: most + margin }}
       up={{ title: '', from: 0, to: known.length, ticks: [] }}
       height_px={70 + 34 * known.length}
+      data={{
+        name: 'effects',
+        columns: ['term', 'effect', 'ci95_low', 'ci95_high'],
+        rows: known.map(({ term, size, low, high }) => [String(term), size, low, high]),
+      }}
       summary={known
         .map(
           ({ term, size, low, high }) =>

@@ -14,9 +14,9 @@ import {
   type Release,
 } from '@/api';
 import { AskDialog, Button, Card, DataTable, Facts, Field, Notice, ReasonDialog, Skeleton, useTitle } from '@/ui';
-import { formatDateTime } from '@/units';
+import { formatDateTime, timeZone } from '@/units';
 import styles from './assignments.module.css';
-import { fromField, toField } from './dates';
+import { dueProblem, fromField, toField } from './dates';
 import { Done, Drilling, DueDate } from './parts';
 import { TrialsTable } from './trials-table';
 import { kOrderLabels, kReleaseLabels } from './labels';
@@ -81,16 +81,24 @@ function DueDialog({
   readonly onClose: () => void;
 }) {
   const [text, setText] = useState(toField(one.due_utc_us));
+  const [now_us] = useState(() => Date.now() * 1000);
+  const wrong = dueProblem(text, now_us);
   return (
     <AskDialog
       title="Change due date"
       action="Save"
-      ready={text === '' || fromField(text) !== null}
+      ready={wrong === ''}
       onClose={onClose}
       onAction={() => setDue(one.id, fromField(text)).then(store)}
     >
       <p>Stations offer the assignment with the earliest due date first. Leave the field empty for no due date.</p>
-      <Field label="Due" type="datetime-local" value={text} onChange={(event) => setText(event.target.value)} />
+      <Field
+        label={`Due (${timeZone()})`}
+        type="datetime-local"
+        value={text}
+        error={text === toField(one.due_utc_us) ? '' : wrong}
+        onChange={(event) => setText(event.target.value)}
+      />
     </AskDialog>
   );
 }

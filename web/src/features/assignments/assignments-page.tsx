@@ -7,7 +7,7 @@ import { formatCount } from '@/units';
 import styles from './assignments.module.css';
 import { Invitations } from './invitations';
 import { Done, Drilling, DueDate } from './parts';
-import { kReleaseLabels } from './labels';
+import { byUrgency, kReleaseLabels } from './labels';
 
 const releaseName = ({ release }: AssignmentSummary) => kReleaseLabels[release].name;
 const releaseCell = (one: AssignmentSummary) => (
@@ -44,7 +44,7 @@ export function AssignmentsPage() {
     by: (one) => one.done / one.planned,
     cell: (one) => <Done done={one.done} planned={one.planned} label={`Trials done of ${one.title}`} />,
   };
-  const all = query.data?.assignments;
+  const all = query.data && byUrgency(query.data.assignments);
   const open = all?.filter((one) => one.done < one.planned),
     over = all?.filter((one) => one.done >= one.planned);
   return (
@@ -95,6 +95,8 @@ export function AssignmentsPage() {
         <Card title="Assignments">
           <DataTable<AssignmentSummary>
             caption="Assignments"
+            order="unfinished first, the earliest due first"
+            address=""
             rows={all}
             keyOf={({ id }) => id}
             empty={may ? 'No assignments yet. Create a new assignment.' : 'No assignments yet.'}

@@ -8,6 +8,13 @@ export function toField(utc_us: number | null): string {
   return `${at.getFullYear()}-${two(at.getMonth() + 1)}-${two(at.getDate())}T${two(at.getHours())}:${two(at.getMinutes())}`;
 }
 
+/** Why a due date cannot be set; empty if it can, as it can be left out. */
+export function dueProblem(text: string, now_us: number): string {
+  const due = fromField(text);
+  if (text !== '' && due === null) return 'Enter a date and a time.';
+  return due !== null && due < now_us ? 'The due date is in the past.' : '';
+}
+
 /** null for an empty field or no date. */
 export function fromField(text: string): number | null {
   const at = text === '' ? Number.NaN : new Date(text).getTime();

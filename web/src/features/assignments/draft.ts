@@ -1,6 +1,6 @@
 /** A new assignment as it is being written. */
 import type { NewAssignment } from '@/api';
-import { fromField } from './dates';
+import { dueProblem, fromField } from './dates';
 
 export interface Item {
   readonly key: string;
@@ -65,8 +65,8 @@ export function firstProblem(draft: Draft, now_us: number): string {
   if (draft.chosen.length === 0) return 'Choose at least one case.';
   if (draft.cohort === '' && draft.people.length === 0) return 'Choose a cohort or trainees.';
   const names = draft.chosen.map(({ blind }) => blind.trim()).filter((name) => name !== '');
-  const due = fromField(draft.due);
-  if (due !== null && due < now_us) return 'The due date is in the past.';
+  const wrongDue = dueProblem(draft.due, now_us);
+  if (wrongDue !== '') return wrongDue;
   if (new Set(names).size !== names.length) return 'Two cases have the same blind name.';
   return '';
 }

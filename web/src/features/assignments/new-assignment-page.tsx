@@ -3,7 +3,7 @@ import { useState, type FormEvent } from 'react';
 import { Link, useLocation, useSearch } from 'wouter';
 import { addAssignment, assignmentsQuery, casesQuery, cohortQuery, cohortsQuery, scenariosQuery } from '@/api';
 import { Badge, Button, Card, Field, Notice, Select, Skeleton, useTitle } from '@/ui';
-import { formatCount } from '@/units';
+import { formatCount, timeZone } from '@/units';
 import styles from './assignments.module.css';
 import { kNoDraft, firstProblem, toggled, trialsEach, requestOf, type Draft, type Item } from './draft';
 import { kOrderLabels, kReleaseLabels, kDrillThenPalpate } from './labels';
@@ -238,7 +238,7 @@ export function NewAssignmentPage() {
             }}
           />
           <Field
-            label="Due (optional)"
+            label={`Due (optional, ${timeZone()})`}
             type="datetime-local"
             value={draft.due}
             onChange={(event) => change({ due: event.target.value })}

@@ -129,6 +129,7 @@ export function CasesPage() {
         <Card title="Cases" aside={may ? <Link href="/assignments/new">Assign cases</Link> : undefined}>
           <div className={styles.stack}>
             <DataTable<CaseSummary>
+              address=""
               caption="Cases"
               rows={query.data?.cases}
               keyOf={({ id }) => id}

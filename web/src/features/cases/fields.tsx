@@ -2,13 +2,13 @@ import { useState } from 'react';
 import { kWalls, type Vec3 } from '@/api';
 import { Field, Select } from '@/ui';
 import styles from './cases.module.css';
-import type { Breach, End, Plan } from './plan';
+import { kBreachDepth_mm, type Breach, type End, type Plan } from './plan';
 
 const kAxes = ['x (left)', 'y (back)', 'z (up)'] as const;
 const inMillimetres = (value: number | undefined | null) =>
   value === undefined || value === null ? '' : String(Math.round(value * 1e5) / 100);
 
-/** A number in millimetres. Valid input is passed on; the text stays as it is typed. */
+/** A number in millimetres. Every number is passed on, also one that is not allowed: no page goes on with an older one. */
 export function Millimetres({
   label,
   value_m,
@@ -49,7 +49,7 @@ export function Millimetres({
           return;
         }
         const number = Number(next);
-        if (Number.isFinite(number) && number >= min && number <= max) onValue(number / 1000);
+        if (Number.isFinite(number)) onValue(number / 1000);
       }}
     />
   );
@@ -135,8 +135,8 @@ export function BreachFields({
         <Millimetres
           label="Depth beyond the bone, mm"
           value_m={breach.depth_m}
-          min={0.5}
-          max={15}
+          min={kBreachDepth_mm.least}
+          max={kBreachDepth_mm.most}
           onValue={(depth_m) => {
             if (depth_m !== null) onBreach({ ...breach, depth_m });
           }}

@@ -20,6 +20,14 @@ describe('a plan of a case', () => {
       breach: null,
     });
   });
+  it('asks nothing of the server for a breach deeper than is allowed, instead of keeping an older depth', () => {
+    const placed = { ...kNoPlan, entry: [0, 0, 0], target: [0, -0.04, 0] } as const;
+    const request = (depth_m: number) =>
+      requestOf({ ...placed, breach: { wall: 'medial', depth_m, at_m: null } })?.breach?.depth_m;
+    expect(request(0.015)).toBe(0.015);
+    expect(request(0.099)).toBeUndefined();
+    expect(request(0)).toBeUndefined();
+  });
   it('is the same after it was an address', () => {
     const plan = {
       entry: [0.0453, 0.1991, -0.0611],

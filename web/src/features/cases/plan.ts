@@ -56,9 +56,16 @@ export function draw(drawing: Drawing, step: Step): Drawing {
   }
 }
 
-/** The request to the server, rounded to 1 µm; null while an end is missing. */
+/** How far a breach may leave the bone; the server allows the same. */
+export const kBreachDepth_mm = { least: 0.5, most: 15 } as const;
+
+const isBreachAllowed = ({ depth_m, at_m }: Breach) =>
+  depth_m * 1000 >= kBreachDepth_mm.least && depth_m * 1000 <= kBreachDepth_mm.most && (at_m === null || at_m >= 0);
+
+/** The request to the server, rounded to 1 µm; null while an end is missing or a number of the breach is not allowed. */
 export function requestOf({ entry, target, radius_m, breach, whole }: Plan): TractRequest | null {
   if (!entry || !target) return null;
+  if (breach && !whole && !isBreachAllowed(breach)) return null;
   const tidy = (p: Vec3): [number, number, number] => [round(p[0]), round(p[1]), round(p[2])];
   return {
     entry_m: tidy(entry),

@@ -12,6 +12,7 @@ import {
   trialQuery,
   type ReferenceWay,
   type Trial,
+  personOf,
 } from '@/api';
 import { makeCursor, TractView, type Cursor } from '@/charts';
 import { Badge, Button, Card, Notice, Skeleton, usePalette, useTitle } from '@/ui';
@@ -226,7 +227,7 @@ export function DebriefPage({ id }: { readonly id: string }) {
   const role = useQuery({ ...sessionQuery, enabled: false }).data?.role;
   const may = role === 'admin' || role === 'faculty';
   const trial = query.data;
-  useTitle(trial ? `Debrief: ${trial.operator_name}` : 'Debrief');
+  useTitle(trial ? `Debrief: ${personOf(trial)}` : 'Debrief');
   const missing = query.error instanceof ApiError && query.error.code === 'not_found';
   return (
     <div className={styles.page}>
@@ -260,7 +261,7 @@ export function DebriefPage({ id }: { readonly id: string }) {
             <h1>Debrief: {trial.case_title}</h1>
             {trial.simulated ? <Badge tone="warn">simulated</Badge> : null}
             <span className={styles.muted}>
-              {trial.operator_name}, {formatDateTime(trial.started_utc_us)}, {formatDuration(trial.duration_s)}
+              {personOf(trial)}, {formatDateTime(trial.started_utc_us)}, {formatDuration(trial.duration_s)}
             </span>
           </div>
           <Verdict trial={trial} />

@@ -7,6 +7,7 @@ import { kBlankOwn, mistypedStates, ownEffect, parametersIn, withFormula } from 
 import { parameterName } from './parameters';
 import { verdictOf } from './verdict';
 import { channelQuantity, effectName, joined } from './names';
+import { isNotBetter } from './publish-step';
 import { pack, problemsOf, rootOf } from './zip-files';
 
 const plain = (text: string) => text.replaceAll('\u202f', ' ');
@@ -179,5 +180,23 @@ describe('names of the lab', () => {
     expect(joined(['a', 'b', 'c'])).toBe('a, b and c');
     expect(channelQuantity('tz_Nm').unit).toBe('N·m');
     expect(channelQuantity('fz_N').unit).toBe('N');
+  });
+});
+
+describe('a model that is to be published', () => {
+  const fit = (before: number | null, held_out_rmse: number | null) =>
+    isNotBetter({ fit: { base: { rmse: before }, held_out_rmse }, diagnosis: null } as unknown as LabRun);
+  const search = (before: number, after: number) =>
+    isNotBetter({
+      fit: null,
+      diagnosis: { base: { held_out_rmse: before }, steps: [{ held_out_rmse: before }, { held_out_rmse: after }] },
+    } as unknown as LabRun);
+
+  it('is told apart from one that is no better than the old one', () => {
+    expect(fit(1.54, 1.57)).toBe(true);
+    expect(fit(1.54, 0.06)).toBe(false);
+    expect(fit(1.54, null)).toBe(false);
+    expect(search(1.83, 0.05)).toBe(false);
+    expect(search(1.83, 1.83)).toBe(true);
   });
 });

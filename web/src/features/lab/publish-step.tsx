@@ -11,7 +11,7 @@ import {
   type LabRunSummary,
   type ModelVersion,
 } from '@/api';
-import { Badge, Button, Card, Field, Notice, Skeleton } from '@/ui';
+import { AskDialog, Badge, Button, Card, Field, Notice, Skeleton } from '@/ui';
 import { formatClock, formatFigure } from '@/units';
 import { addedEffects } from './add-step';
 import { primaryUnit } from './comparison-parts';
@@ -34,6 +34,13 @@ export function candidateText(run: LabRun): string {
   return `${what}: ${formatFigure(error, primaryUnit(run))} on held-out trials`;
 }
 
+/** Whether a run's model has no smaller error on held-out trials than the model that it came from; unknown is not worse. */
+export function isNotBetter({ fit, diagnosis }: Pick<LabRun, 'fit' | 'diagnosis'>): boolean {
+  const before = fit ? fit.base.rmse : diagnosis?.base.held_out_rmse,
+    after = fit ? fit.held_out_rmse : diagnosis?.steps.at(-1)?.held_out_rmse;
+  return typeof before === 'number' && typeof after === 'number' && after >= before;
+}
+
 function Candidate({
   run,
   summary,
@@ -51,7 +58,8 @@ function Candidate({
       <span className={styles.choiceText}>
         <span className={styles.choiceName}>
           {run ? candidateText(run) : <Skeleton width="60%" />}{' '}
-          {summary.version === null ? null : <Badge tone="good">published</Badge>}
+          {summary.version === null ? null : <Badge tone="good">published</Badge>}{' '}
+          {run && isNotBetter(run) ? <Badge tone="warn">not better than the old model</Badge> : null}
         </span>
         <span className={styles.muted}>{summary.kind === 'fit' ? 'fitted manually' : 'found by the search'}</span>
       </span>
@@ -101,6 +109,7 @@ export function PublishStep({ model, set, versions }: Props) {
   const [picked, setPicked] = useState<string | null>(null);
   const [name, setName] = useState(model.name);
   const [note, setNote] = useState<string | null>(null);
+  const [asking, setAsking] = useState(false);
   const summary = ready.find(({ id }) => id === picked) ?? ready[0];
   const run = full[ready.findIndex(({ id }) => id === summary?.id)]?.data;
   const made = useMutation({
@@ -124,7 +133,8 @@ export function PublishStep({ model, set, versions }: Props) {
   const version = summary.version ?? (made.data && made.variables === undefined ? made.data.id : null);
   const submit = (event: FormEvent) => {
     event.preventDefault();
-    if (!made.isPending) made.mutate();
+    if (run && isNotBetter(run)) setAsking(true);
+    else if (!made.isPending) made.mutate();
   };
   return (
     <>
@@ -179,6 +189,19 @@ export function PublishStep({ model, set, versions }: Props) {
           ) : null}
         </form>
       </Card>
+      {asking && run ? (
+        <AskDialog
+          title="Publish a model that is not better?"
+          action="Publish it anyway"
+          onClose={() => setAsking(false)}
+          onAction={() => made.mutateAsync()}
+        >
+          <p>
+            On trials that the fit did not see, its error is not smaller than that of the model it came from (
+            {candidateText(run)}).
+          </p>
+        </AskDialog>
+      ) : null}
       {version === null ? null : <Published version={version} base={model} set={set} />}
       {version === null ? null : (
         <SendCard

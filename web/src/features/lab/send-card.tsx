@@ -1,13 +1,19 @@
 import { useMutation, useQuery, useQueryClient } from '@tanstack/react-query';
 import { useState, type FormEvent } from 'react';
-import { sendModel, sentModelQuery, type ModelVersion, type SentModel } from '@/api';
-import { Badge, Button, Card, Notice, Skeleton } from '@/ui';
+import { recallModel, sendModel, sentModelQuery, type ModelVersion, type SentModel } from '@/api';
+import { AskDialog, Badge, Button, Card, Notice, Skeleton } from '@/ui';
 import { formatDateTime } from '@/units';
 import styles from './lab.module.css';
 
 type Sent = SentModel['stations'][number];
 
-function SentStations({ sent }: { readonly sent: readonly Sent[] }) {
+function SentStations({
+  sent,
+  onRecall,
+}: {
+  readonly sent: readonly Sent[];
+  readonly onRecall: (station: Sent) => void;
+}) {
   if (sent.length === 0) return null;
   return (
     <ul className={styles.sent} data-part="sent">
@@ -22,7 +28,10 @@ function SentStations({ sent }: { readonly sent: readonly Sent[] }) {
               : one.asked_utc_us === null
                 ? ''
                 : `sent ${formatDateTime(one.asked_utc_us)} by ${one.asked_by}`}
-          </span>
+          </span>{' '}
+          <Button look="quiet" label={`Recall from ${one.name}`} onClick={() => onRecall(one)}>
+            Recall…
+          </Button>
         </li>
       ))}
     </ul>
@@ -34,10 +43,12 @@ export function SendCard({ version }: { readonly version: Pick<ModelVersion, 'id
   const client = useQueryClient();
   const sent = useQuery(sentModelQuery(version.id));
   const [asking, setAsking] = useState(false);
+  const [dialog, setDialog] = useState<'send' | Sent | null>(null);
+  const store = (now: SentModel) => client.setQueryData(sentModelQuery(version.id).queryKey, now);
   const made = useMutation({
     mutationFn: (stations: readonly string[] | null) => sendModel(version.id, stations),
     onSuccess: (now) => {
-      client.setQueryData(sentModelQuery(version.id).queryKey, now);
+      store(now);
       setAsking(false);
     },
   });
@@ -62,7 +73,7 @@ export function SendCard({ version }: { readonly version: Pick<ModelVersion, 'id
             {sent.error.message}
           </Notice>
         ) : null}
-        {sent.isPending ? <Skeleton height="28px" width="320px" /> : <SentStations sent={there} />}
+        {sent.isPending ? <Skeleton height="28px" width="320px" /> : <SentStations sent={there} onRecall={setDialog} />}
         {made.isError ? (
           <Notice tone="bad" title="The version was not sent.">
             {made.error.message}
@@ -94,8 +105,8 @@ export function SendCard({ version }: { readonly version: Pick<ModelVersion, 'id
           </form>
         ) : (
           <p className={styles.buttons} hidden={open.length === 0}>
-            <Button look="solid" onClick={() => made.mutate(null)} disabled={made.isPending || sent.isPending}>
-              {made.isPending ? 'Sending…' : 'Send to all stations'}
+            <Button look="solid" onClick={() => setDialog('send')} disabled={made.isPending || sent.isPending}>
+              {made.isPending ? 'Sending…' : 'Send to all stations…'}
             </Button>
             <Button onClick={() => setAsking(true)} disabled={made.isPending}>
               Choose stations…
@@ -108,6 +119,32 @@ export function SendCard({ version }: { readonly version: Pick<ModelVersion, 'id
           </p>
         ) : null}
       </div>
+      {dialog === 'send' ? (
+        <AskDialog
+          title={`Send “${version.name}” to ${open.length === 1 ? 'one station' : `${open.length} stations`}?`}
+          action="Send"
+          onClose={() => setDialog(null)}
+          onAction={() => made.mutateAsync(null)}
+        >
+          <p>
+            {open.map(({ name }) => name).join(', ')}: trials can be started with this version from then on. It can be
+            recalled.
+          </p>
+        </AskDialog>
+      ) : null}
+      {dialog !== null && dialog !== 'send' ? (
+        <AskDialog
+          title={`Recall “${version.name}” from ${dialog.name}?`}
+          action="Recall"
+          onClose={() => setDialog(null)}
+          onAction={() => recallModel(version.id, dialog.id).then(store)}
+        >
+          <p>
+            The station forgets the version when it next connects to the server. Trials that were done with it stay as
+            they are.
+          </p>
+        </AskDialog>
+      ) : null}
     </Card>
   );
 }

@@ -65,6 +65,7 @@ export function AuditPage() {
       ) : null}
       <Card title="Changes">
         <DataTable<AuditRow>
+          address=""
           caption="Changes"
           order="newest first"
           partial={query.hasNextPage}

@@ -113,7 +113,9 @@ function NewAccountCard() {
   );
 }
 
-type AccountAction = { readonly kind: 'password' | 'badge'; readonly account: Account };
+type AccountAction =
+  | { readonly kind: 'password' | 'badge'; readonly account: Account }
+  | { readonly kind: 'role'; readonly account: Account; readonly to: Role };
 
 function BadgeDialog({
   account,
@@ -188,6 +190,7 @@ export function PeoplePage() {
       <NewAccountCard />
       <Card title="Accounts">
         <DataTable<Account>
+          address=""
           caption="Accounts"
           minWidth={1040}
           rows={query.data?.accounts}
@@ -209,7 +212,8 @@ export function PeoplePage() {
                     value={one.role}
                     onChange={(event) => {
                       const to = kRoles.find((known) => known === event.target.value);
-                      if (to) role.mutate({ id: one.id, to });
+                      if (to === 'admin' || (to && one.role === 'admin')) setAction({ kind: 'role', account: one, to });
+                      else if (to) role.mutate({ id: one.id, to });
                     }}
                   >
                     {kRoles.map((known) => (
@@ -272,6 +276,21 @@ export function PeoplePage() {
       </Card>
       {action?.kind === 'badge' ? (
         <BadgeDialog account={action.account} onDone={fresh} onClose={() => setAction(null)} />
+      ) : null}
+      {action?.kind === 'role' ? (
+        <AskDialog
+          title={`Change the role of ${action.account.name} to ${roleName(action.to).toLowerCase()}?`}
+          action="Change role"
+          onClose={() => setAction(null)}
+          onAction={() => role.mutateAsync({ id: action.account.id, to: action.to })}
+        >
+          <p>
+            {action.to === 'admin'
+              ? 'An administrator sees and changes everything on this server: accounts, studies, trials and backups.'
+              : 'The person can no longer administrate this server.'}{' '}
+            All sessions of the account end.
+          </p>
+        </AskDialog>
       ) : null}
       {action?.kind === 'password' ? (
         <AskDialog

@@ -90,6 +90,7 @@ export function StationsPage() {
       {may ? <Enrol /> : null}
       <Card title="Stations">
         <DataTable<Station>
+          address=""
           caption="Stations"
           minWidth={760}
           rows={query.data?.stations}

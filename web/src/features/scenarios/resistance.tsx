@@ -23,6 +23,11 @@ export function Resistance({
         across={{ title: 'tip depth, mm', from: 0, to: end }}
         up={{ title: 'required force, N', from: 0, to: top }}
         height_px={340}
+        data={{
+          name: 'resistance',
+          columns: ['depth_m', ...found.at.map(({ speed_m_s }) => `force_N_at_${speed_m_s}_m_s`)],
+          rows: found.depth_m.map((depth_m, row) => [depth_m, ...found.at.map(({ force_N }) => force_N[row] ?? null)]),
+        }}
         summary={`Required force over depth at ${found.at.length} speeds, up to ${formatForce(newton(peak))}; ${found.walls.length === 0 ? 'no wall' : `walls at ${found.walls.map(({ at_m }) => `${Math.round(at_m * 1e4) / 10} mm`).join(', ')}`}.`}
       >
         {(places) => (

@@ -1,5 +1,5 @@
 import { useMutation, useQuery, useQueryClient } from '@tanstack/react-query';
-import { useReducer, type FormEvent } from 'react';
+import { useReducer, useState, type FormEvent } from 'react';
 import { Link, useLocation } from 'wouter';
 import {
   addScenario,
@@ -79,6 +79,9 @@ function Bench({ start, parent }: { readonly start: ScenarioFile; readonly paren
   const settled = useSettled(file, 200);
   const check = useQuery(scenarioCheckQuery(draftOf(settled)));
   const found = check.data;
+  // A value that is refused has no curve: the last one stays, marked as such.
+  const [curve, setCurve] = useState(found?.curve ?? null);
+  if (found?.curve && found.curve !== curve) setCurve(found.curve);
   const late = check.isPlaceholderData || settled !== file;
   const unplaced =
     found && !found.ok && !/^\/(bone|breach|density|travel_m|walls_m|layers|name)/.test(found.field) ? found.error : '';
@@ -100,8 +103,15 @@ function Bench({ start, parent }: { readonly start: ScenarioFile; readonly paren
                 {check.error.message}
               </Notice>
             ) : null}
-            {found?.curve ? (
-              <Resistance found={found.curve} late={late} />
+            {curve ? (
+              <>
+                <Resistance found={curve} late={late || !found?.curve} />
+                {found && !found.curve ? (
+                  <p className={styles.warn} role="status">
+                    The curve shows the last valid values. Correct the marked value.
+                  </p>
+                ) : null}
+              </>
             ) : (
               <div className={styles.blank}>
                 {found ? <p>Correct the marked value to see the curve.</p> : <Skeleton height="340px" />}

@@ -48,6 +48,7 @@ export function ScenariosPage() {
       <Card title="Saved versions">
         <div className={styles.stack}>
           <DataTable<ScenarioVersion>
+            address=""
             caption="Versions"
             minWidth={640}
             rows={query.data?.scenarios}

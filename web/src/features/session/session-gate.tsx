@@ -1,31 +1,48 @@
 import { useQuery, useQueryClient } from '@tanstack/react-query';
-import { useEffect, type ReactNode } from 'react';
-import { sessionQuery } from '@/api';
+import { useEffect, useSyncExternalStore, type ReactNode } from 'react';
+import { resumeRequests, sessionQuery } from '@/api';
 import { Notice } from '@/ui';
-import { noteSession } from './ended';
+import { currentPerson, notePerson, subscribePerson } from './ended';
 import { FirstPassword } from './own-account-page';
 import { SignIn } from './sign-in';
 
-/** Shows the pages to who is signed in and the sign-in to all others, at the address they came for. */
+/**
+ * Shows the pages to who is signed in and the sign-in to all others, at the address they came for. When a session ends by
+ * itself, the page stays as it is behind the sign-in: the same person finds again what was typed, anybody else a new page.
+ */
 export function SessionGate({ waiting, children }: { readonly waiting: ReactNode; readonly children: ReactNode }) {
   const client = useQueryClient();
   const session = useQuery(sessionQuery);
-  const signedOut = session.data === null;
+  const person = useSyncExternalStore(subscribePerson, currentPerson);
+  const name = session.data?.name ?? null;
 
   useEffect(() => {
-    if (session.data) noteSession();
-    // What the last person saw is not kept for the next one.
-    if (signedOut) client.removeQueries({ type: 'inactive' });
-  }, [client, session.data, signedOut]);
+    if (name !== null && name === person) resumeRequests(true);
+    if (name !== null && name !== person) {
+      resumeRequests(false);
+      // What the last person saw is not kept for the next one.
+      client.removeQueries({ predicate: ({ queryKey }) => queryKey[0] !== sessionQuery.queryKey[0] });
+      notePerson(name);
+    }
+    if (name === null && person === null) client.removeQueries({ type: 'inactive' });
+  }, [client, name, person]);
 
   if (session.isPending) return waiting;
-  if (session.data) return session.data.must_change ? <FirstPassword /> : children;
-  if (session.isError) {
+  if (session.isError && !session.data && person === null) {
     return (
       <Notice tone="bad" title="The server cannot be reached." onRetry={() => void session.refetch()}>
         {session.error.message}
       </Notice>
     );
   }
-  return <SignIn />;
+  return (
+    <>
+      {name === null ? <SignIn /> : name === person ? null : waiting}
+      {person === null ? null : (
+        <div key={person} style={{ display: name === person ? 'contents' : 'none' }}>
+          {session.data?.must_change ? <FirstPassword /> : children}
+        </div>
+      )}
+    </>
+  );
 }

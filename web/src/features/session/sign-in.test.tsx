@@ -2,10 +2,18 @@
 import { QueryClient, QueryClientProvider } from '@tanstack/react-query';
 import { cleanup, render, screen, waitFor } from '@testing-library/react';
 import userEvent from '@testing-library/user-event';
+import { useState } from 'react';
+import * as v from 'valibot';
 import { afterEach, describe, expect, it, vi } from 'vitest';
+import { requestJson } from '@/api/client';
+import { makeClient } from '@/app';
+import { noteSignOut } from './ended';
 import { SessionGate } from './session-gate';
 
-afterEach(cleanup);
+afterEach(() => {
+  cleanup();
+  noteSignOut();
+});
 
 const json = (body: unknown, status: number) => Promise.resolve(new Response(JSON.stringify(body), { status }));
 
@@ -98,5 +106,75 @@ describe('signing in', () => {
     await screen.findByLabelText('Name');
     await userEvent.click(screen.getByRole('button', { name: 'Sign in' }));
     expect(post).not.toHaveBeenCalled();
+  });
+});
+
+describe('a session that ends by itself', () => {
+  /** The session of the person `who`, as the server has it: null for nobody. */
+  function page(who: { name: string | null }) {
+    vi.spyOn(globalThis, 'fetch').mockImplementation((input, init) => {
+      const path = new URL(String(input), 'http://x').pathname;
+      if (path === '/api/v1/session' && init?.method === 'POST') {
+        const { name } = JSON.parse(String(init.body)) as { name: string };
+        who.name = name;
+      }
+      if (path === '/api/v1/session/oidc') return json({ offered: false, label: null }, 200);
+      if (who.name === null) return json({ error: 'nobody', code: 'unauthorised' }, 401);
+      return path === '/api/v1/session'
+        ? json({ id: who.name, name: who.name, role: 'admin' }, 200)
+        : json({ saved: who.name }, 200);
+    });
+    const client = makeClient();
+    function Form() {
+      const [saved, setSaved] = useState('');
+      return (
+        <>
+          <input aria-label="Title" />
+          <button
+            onClick={() =>
+              void requestJson('/things', v.object({ saved: v.string() })).then(
+                (answer) => setSaved(`saved by ${answer.saved}`),
+                (reason: Error) => setSaved(reason.message),
+              )
+            }
+          >
+            Save
+          </button>
+          <p>{saved}</p>
+        </>
+      );
+    }
+    render(
+      <QueryClientProvider client={client}>
+        <SessionGate waiting="waiting">
+          <Form />
+        </SessionGate>
+      </QueryClientProvider>,
+    );
+  }
+
+  it('keeps what was typed, and what was sent goes through after the sign-in', async () => {
+    const who: { name: string | null } = { name: 'faculty' };
+    page(who);
+    await userEvent.type(await screen.findByLabelText('Title'), 'Week 3');
+    who.name = null;
+    await userEvent.click(screen.getByRole('button', { name: 'Save' }));
+    await screen.findByText(/Your session has ended/);
+    expect(screen.queryByRole('textbox', { name: 'Title' }), 'hidden while nobody is signed in').toBeNull();
+    await attempt();
+    expect(await screen.findByText('saved by faculty')).toBeTruthy();
+    expect((screen.getByRole('textbox', { name: 'Title' }) as HTMLInputElement).value).toBe('Week 3');
+  });
+
+  it('shows and sends nothing of it to another person', async () => {
+    const who: { name: string | null } = { name: 'faculty' };
+    page(who);
+    await userEvent.type(await screen.findByLabelText('Title'), 'Week 3');
+    who.name = null;
+    await userEvent.click(screen.getByRole('button', { name: 'Save' }));
+    await screen.findByText(/Your session has ended/);
+    await attempt('director');
+    await waitFor(() => expect((screen.getByRole('textbox', { name: 'Title' }) as HTMLInputElement).value).toBe(''));
+    expect(screen.queryByText(/saved by/)).toBeNull();
   });
 });

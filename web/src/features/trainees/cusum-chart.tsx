@@ -1,14 +1,27 @@
 import type { Trainee } from '@/api';
 import { curve, Plane } from '@/charts';
-import { formatCount } from '@/units';
+import { formatCount, formatDate } from '@/units';
 import styles from './trainees.module.css';
+
+/** The day of a trial, by its number. */
+const startOf = (attempts: Trainee['attempts'], trial: number) => {
+  const found = attempts.find(({ number }) => number === trial);
+  return found ? formatDate(found.started_utc_us) : '';
+};
 
 /** The sums trial by trial: towards competence, and from its signal on towards relapse. */
 export function CusumChart({ trainee }: { readonly trainee: Trainee }) {
-  const { attempts, rule, competent_at_trial: signal, relapse_at_trial: relapse } = trainee;
+  const { attempts, rule, competent_at_trial: signal, relapses } = trainee;
   const most = attempts.reduce((top, { sum, relapse_sum }) => Math.max(top, sum, relapse_sum ?? 0), rule.threshold);
   const watched = attempts.filter(({ relapse_sum }) => relapse_sum !== null);
-  const summary = `Sum over ${formatCount(attempts.length)} trials. ${signal === null ? 'The threshold is not reached.' : `Competence is signalled at trial ${formatCount(signal)}.`} ${relapse === null ? '' : `Relapse is signalled at trial ${formatCount(relapse)}.`}`;
+  const summary = `Sum over ${formatCount(attempts.length)} trials. ${signal === null ? 'The threshold is not reached.' : `Competence is signalled at trial ${formatCount(signal)}.`} ${relapses
+    .map(({ at_trial, recovered_at_trial: back }) =>
+      [
+        `Relapse is signalled at trial ${formatCount(at_trial)}`,
+        back === null ? '.' : ` and has ended at trial ${formatCount(back)}.`,
+      ].join(''),
+    )
+    .join(' ')}`;
   const last = Math.max(attempts.length, 1);
   return (
     <>
@@ -17,6 +30,11 @@ export function CusumChart({ trainee }: { readonly trainee: Trainee }) {
         up={{ title: 'sum', from: 0, to: most * 1.1 }}
         height_px={230}
         summary={summary}
+        data={{
+          name: `${trainee.trainee} competence`,
+          columns: ['trial', 'correct', 'lc_cusum', 'relapse_cusum'],
+          rows: attempts.map(({ number, correct, sum, relapse_sum }) => [number, Number(correct), sum, relapse_sum]),
+        }}
       >
         {(places) => (
           <>
@@ -52,6 +70,16 @@ export function CusumChart({ trainee }: { readonly trainee: Trainee }) {
                 className={styles.relapseSum}
               />
             ) : null}
+            {relapses.map(({ at_trial, recovered_at_trial: back }) =>
+              back === null ? null : (
+                <g key={at_trial} className={styles.recovered}>
+                  <line x1={places.x(back)} x2={places.x(back)} y1={places.y(0)} y2={places.y(rule.relapse)} />
+                  <text x={places.x(back) + 4} y={places.y(rule.relapse / 2)}>
+                    recovered {startOf(attempts, back)}
+                  </text>
+                </g>
+              ),
+            )}
             {attempts.map(({ number, sum, correct }) => (
               <circle
                 key={number}

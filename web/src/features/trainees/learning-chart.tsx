@@ -18,6 +18,11 @@ function RightChart({ trainee }: { readonly trainee: Trainee }) {
       up={{ title: 'correct, last ten trials, %', from: 0, to: 100 }}
       height_px={230}
       summary={`Share of correct answers in the last ten trials: ${now === null ? 'too few trials' : formatShare(share(now))} now; ${formatShare(wanted as Share)} is adequate.`}
+      data={{
+        name: `${trainee.trainee} correct answers`,
+        columns: ['trial', 'correct', 'share_of_last_ten'],
+        rows: attempts.map(({ number, correct }, i) => [number, Number(correct), running[i] ?? null]),
+      }}
     >
       {(places) => (
         <>
@@ -78,6 +83,11 @@ function ScoreChart({ trainee, metric }: { readonly trainee: Trainee; readonly m
         }}
         height_px={230}
         summary={`${metric.label} over ${points.length} trials.${ratio === undefined ? '' : ` Each doubling of the number of trials reduces it to ${formatShare(share(ratio))}.`}`}
+        data={{
+          name: `${trainee.trainee} ${metric.label}`,
+          columns: ['trial', `${metric.id}_in_${metric.unit === '1' ? 'ones' : metric.unit}`],
+          rows: trainee.attempts.map(({ number, scores }) => [number, scores[metric.id] ?? null]),
+        }}
       >
         {(places) => (
           <>

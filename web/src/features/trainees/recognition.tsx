@@ -76,6 +76,11 @@ export function Calibration({ bins }: { readonly bins: readonly CalibrationBin[]
       up={{ title: 'correct, %', from: 0, to: 100 }}
       height_px={230}
       summary={`Calibration of confidence: ${summary}.`}
+      data={{
+        name: 'calibration of confidence',
+        columns: ['stated_confidence', 'correct', 'trials', 'wilson_low', 'wilson_high'],
+        rows: bins.map((bin) => [bin.stated, bin.right, bin.trials, bin.wilson_low, bin.wilson_high]),
+      }}
     >
       {(places) => (
         <>

@@ -49,6 +49,7 @@ export function TraineesPage() {
         }
       >
         <DataTable<TraineeSummary>
+          address=""
           caption="Trainees"
           minWidth={820}
           rows={all && shownOf(all, show, now)}

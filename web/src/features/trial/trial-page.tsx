@@ -1,7 +1,7 @@
 import { useQuery } from '@tanstack/react-query';
 import { useMemo, useState, type ReactNode } from 'react';
 import { Link } from 'wouter';
-import { ApiError, forceDepthQuery, trialQuery, type Trial } from '@/api';
+import { ApiError, forceDepthQuery, trialQuery, type Trial, personOf } from '@/api';
 import { makeCursor, type Cursor } from '@/charts';
 import { Badge, Card, Facts, Notice, Skeleton, useTitle } from '@/ui';
 import { formatCount, formatDateTime, formatDateTimeLong, formatDuration, formatRate, isoDateTime } from '@/units';
@@ -31,7 +31,7 @@ function Header({ trial }: { readonly trial: Trial }) {
       <div className={styles.facts}>
         <Facts
           facts={[
-            { name: 'Operator', value: trial.operator_name },
+            { name: 'Person', value: personOf(trial) },
             {
               name: 'Started',
               value: (
@@ -129,7 +129,7 @@ export function TrialPage({ id }: { readonly id: string }) {
   const query = useQuery(trialQuery(id));
   const [cursor] = useState(makeCursor);
   const trial = query.data;
-  useTitle(trial ? `${trial.case_title}, ${trial.operator_name}` : 'Trial');
+  useTitle(trial ? `${trial.case_title}, ${personOf(trial)}` : 'Trial');
   if (query.isPending) return <Waiting />;
   if (!trial) return <Failed reason={query.error ?? new Error('No answer')} retry={() => void query.refetch()} />;
   return (

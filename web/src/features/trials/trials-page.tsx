@@ -1,15 +1,27 @@
-import { useInfiniteQuery } from '@tanstack/react-query';
-import { trialsQuery } from '@/api';
-import { Button, Notice, useTitle } from '@/ui';
+import { useQuery } from '@tanstack/react-query';
+import { useLocation, useSearch } from 'wouter';
+import { kTrialsPerPage, trialsQuery } from '@/api';
+import { Field, Notice, Pages, Select, useSettled, useTitle } from '@/ui';
 import { formatCount } from '@/units';
-import { TrialsTable } from './trials-table';
+import { fromAddress, kAnswers, toAddress, type TrialView } from './search';
 import styles from './trials-page.module.css';
+import { TrialsTable } from './trials-table';
 
+/** Trials, searched, sorted and handed out page by page by the server; what is shown is in the address. */
 export function TrialsPage() {
   useTitle('Trials');
-  const query = useInfiniteQuery(trialsQuery);
-  const trials = query.data?.pages.flatMap((page) => page.trials);
+  const search = useSearch();
+  const [path, go] = useLocation();
+  const view = fromAddress(search);
+  const change = (next: Partial<TrialView>) => {
+    const parameters = toAddress({ ...view, page: 0, ...next });
+    go(parameters === '' ? path : `${path}?${parameters}`, { replace: true });
+  };
+  const asked = useSettled(view.search, 250);
+  const query = useQuery(trialsQuery({ ...view, search: asked.trim() }));
+  const { trials, total = 0 } = query.data ?? {};
   const assessing = trials?.filter((trial) => trial.state === 'assessing').length ?? 0;
+  const narrowed = view.search !== '' || view.answer !== 'any';
   return (
     <>
       <div className={styles.head}>
@@ -17,10 +29,10 @@ export function TrialsPage() {
         <p role="status" className={styles.count}>
           {trials === undefined
             ? ''
-            : `${formatCount(trials.length)} shown${assessing > 0 ? `, ${formatCount(assessing)} being assessed` : ''}`}
+            : `${formatCount(total)} ${narrowed ? 'found' : 'in all'}${assessing > 0 ? `, ${formatCount(assessing)} being assessed` : ''}`}
         </p>
       </div>
-      {query.isError && (trials === undefined || !query.isFetching) ? (
+      {query.isError ? (
         <div className={styles.error}>
           <Notice
             tone="bad"
@@ -31,17 +43,37 @@ export function TrialsPage() {
           </Notice>
         </div>
       ) : null}
-      {trials?.length === 0 ? (
+      <div className={styles.find}>
+        <Field
+          label="Find by person, case or station"
+          type="search"
+          value={view.search}
+          maxLength={100}
+          onChange={(event) => change({ search: event.target.value })}
+        />
+        <Select
+          label="Answer"
+          value={view.answer}
+          options={kAnswers.map(({ value, text }) => ({ value, text }))}
+          onChange={(event) => {
+            const next = kAnswers.find(({ value }) => value === event.target.value);
+            if (next) change({ answer: next.value });
+          }}
+        />
+      </div>
+      {trials?.length === 0 && !narrowed ? (
         <Notice title="No trials yet.">A trial appears here after a station has uploaded it completely.</Notice>
       ) : trials !== undefined || query.isPending ? (
-        <TrialsTable trials={trials} partial={query.hasNextPage} />
+        <TrialsTable trials={trials} view={view} onSort={(sort, order) => change({ sort, order })} />
       ) : null}
-      {query.hasNextPage ? (
-        <div className={styles.more}>
-          <Button onClick={() => void query.fetchNextPage()} disabled={query.isFetchingNextPage}>
-            {query.isFetchingNextPage ? 'Loading…' : 'Show older trials'}
-          </Button>
-        </div>
+      {total > kTrialsPerPage ? (
+        <Pages
+          label="Pages: Trials"
+          page={view.page}
+          size={kTrialsPerPage}
+          of={total}
+          onPage={(page) => change({ page })}
+        />
       ) : null}
     </>
   );

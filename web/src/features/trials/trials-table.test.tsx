@@ -1,5 +1,6 @@
 // @vitest-environment jsdom
 import { cleanup, render, screen, within } from '@testing-library/react';
+import userEvent from '@testing-library/user-event';
 import { afterEach, describe, expect, it } from 'vitest';
 import type { TrialSummary } from '@/api';
 import { second, utcMicroseconds } from '@/units';
@@ -12,7 +13,8 @@ const trial = (changes: Partial<TrialSummary>): TrialSummary => ({
   case_id: 'c',
   case_title: 'L3 left pedicle',
   station: 'lab',
-  operator_name: 'A. Resident',
+  operator_name: 'P4vbzdez6',
+  person: 'A. Resident',
   simulated: false,
   started_utc_us: utcMicroseconds(1.7e15),
   duration_s: second(61.2),
@@ -22,20 +24,43 @@ const trial = (changes: Partial<TrialSummary>): TrialSummary => ({
   ...changes,
 });
 
+const kView = { view: { sort: 'started', order: 'descending' }, onSort: () => undefined } as const;
+
 const cellsOf = (row: HTMLElement) =>
   within(row)
     .getAllByRole('cell')
     .map((cell) => cell.textContent);
 
 describe('the table of trials', () => {
+  it('names the person where it is known, and asks for another order by its headers', async () => {
+    const asked: unknown[] = [];
+    render(
+      <TrialsTable
+        trials={[trial({}), trial({ id: 'b', person: '' })]}
+        view={{ sort: 'person', order: 'ascending' }}
+        onSort={(...order) => asked.push(order)}
+      />,
+    );
+    const [, known, unknown] = screen.getAllByRole('row');
+    expect(known?.textContent).toContain('A. Resident');
+    expect(unknown?.textContent).toContain('P4vbzdez6');
+    expect(screen.getByRole('columnheader', { name: /Person/ }).getAttribute('aria-sort')).toBe('ascending');
+    await userEvent.click(screen.getByRole('button', { name: 'Person' }));
+    await userEvent.click(screen.getByRole('button', { name: 'Case' }));
+    expect(asked).toEqual([
+      ['person', 'descending'],
+      ['case', 'ascending'],
+    ]);
+  });
+
   it('holds the place of rows while they come, and says that it is busy', () => {
-    render(<TrialsTable trials={undefined} />);
+    render(<TrialsTable trials={undefined} {...kView} />);
     expect(screen.getByRole('table').getAttribute('aria-busy')).toBe('true');
     expect(screen.getAllByRole('row').length).toBeGreaterThan(5);
   });
 
   it('links every trial by its case and escapes its id', () => {
-    render(<TrialsTable trials={[trial({ id: 'a/b' })]} />);
+    render(<TrialsTable trials={[trial({ id: 'a/b' })]} {...kView} />);
     expect(screen.getByRole('link', { name: 'L3 left pedicle' }).getAttribute('href')).toBe('/trials/a%2Fb');
   });
 
@@ -46,14 +71,19 @@ describe('the table of trials', () => {
     [{ correct: null, state: 'assessing' }, '–', 'assessing…'],
     [{ correct: null, state: 'failed' }, '–', 'failed'],
   ] satisfies [Partial<TrialSummary>, string, string][])('says of %o: %s, %s', (changes, answer, state) => {
-    render(<TrialsTable trials={[trial(changes)]} />);
+    render(<TrialsTable trials={[trial(changes)]} {...kView} />);
     const [, row] = screen.getAllByRole('row');
     if (!row) throw new Error('no row');
     expect(cellsOf(row).slice(-2)).toEqual([answer, state]);
   });
 
   it('marks a simulated operator, and only such a one', () => {
-    render(<TrialsTable trials={[trial({}), trial({ id: 'b', operator_name: 'hand', simulated: true })]} />);
+    render(
+      <TrialsTable
+        trials={[trial({}), trial({ id: 'b', person: '', operator_name: 'hand', simulated: true })]}
+        {...kView}
+      />,
+    );
     const [, human, simulated] = screen.getAllByRole('row');
     if (!human || !simulated) throw new Error('two rows expected');
     expect(within(human).queryByText('simulated')).toBeNull();

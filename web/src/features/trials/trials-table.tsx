@@ -1,7 +1,8 @@
 import { Link } from 'wouter';
-import type { TrialSummary } from '@/api';
-import { Badge, DataTable, type DataColumn } from '@/ui';
+import { personOf, type TrialSummary } from '@/api';
+import { Badge, SortHead, Table, type Column, type DataColumn } from '@/ui';
 import { formatDateTime, formatDuration, isoDateTime } from '@/units';
+import type { TrialView } from './search';
 import styles from './trials-table.module.css';
 
 function AnswerCell({ trial }: { readonly trial: TrialSummary }) {
@@ -21,15 +22,17 @@ function StateCell({ trial }: { readonly trial: TrialSummary }) {
   }
 }
 
-const kColumns: readonly DataColumn<TrialSummary>[] = [
+type Sort = TrialView['sort'];
+
+const kColumns: readonly (DataColumn<TrialSummary> & { readonly sort?: Sort })[] = [
   {
     name: 'Started',
-    by: (trial) => trial.started_utc_us,
+    sort: 'started',
     cell: (trial) => <time dateTime={isoDateTime(trial.started_utc_us)}>{formatDateTime(trial.started_utc_us)}</time>,
   },
   {
     name: 'Case',
-    by: (trial) => trial.case_title,
+    sort: 'case',
     cell: (trial) => (
       <Link href={`/trials/${encodeURIComponent(trial.id)}`} className={styles.link}>
         {trial.case_title}
@@ -37,49 +40,46 @@ const kColumns: readonly DataColumn<TrialSummary>[] = [
     ),
   },
   {
-    name: 'Operator',
-    by: (trial) => trial.operator_name,
+    name: 'Person',
+    sort: 'person',
     cell: (trial) => (
       <span className={styles.operator}>
-        {trial.operator_name}
+        {personOf(trial)}
         {trial.simulated ? <Badge tone="warn">simulated</Badge> : null}
       </span>
     ),
   },
-  { name: 'Station', by: (trial) => trial.station, cell: (trial) => trial.station },
-  {
-    name: 'Duration',
-    by: (trial) => trial.duration_s,
-    cell: (trial) => formatDuration(trial.duration_s),
-    number: true,
-  },
-  { name: 'Answer', by: (trial) => trial.correct, cell: (trial) => <AnswerCell trial={trial} /> },
-  { name: 'State', by: (trial) => trial.state, cell: (trial) => <StateCell trial={trial} /> },
+  { name: 'Station', sort: 'station', cell: (trial) => trial.station },
+  { name: 'Duration', sort: 'duration', cell: (trial) => formatDuration(trial.duration_s), number: true },
+  { name: 'Answer', cell: (trial) => <AnswerCell trial={trial} /> },
+  { name: 'State', cell: (trial) => <StateCell trial={trial} /> },
 ];
 
 interface Props {
   /** `undefined` while loading: rows of the same height hold the place. */
   readonly trials: readonly TrialSummary[] | undefined;
-  /** The server has older ones. */
-  readonly partial?: boolean;
+  readonly view: Pick<TrialView, 'sort' | 'order'>;
+  readonly onSort: (sort: Sort, order: TrialView['order']) => void;
 }
 
-export function TrialsTable({ trials, partial = false }: Props) {
+/** The page of trials that the server sorted. */
+export function TrialsTable({ trials, view, onSort }: Props) {
+  const columns = kColumns.map((column): Column<TrialSummary> => {
+    const { sort } = column;
+    if (sort === undefined) return column;
+    const sorted = view.sort === sort ? view.order : undefined;
+    const press = () => onSort(sort, sorted === 'ascending' ? 'descending' : 'ascending');
+    return { ...column, sorted, name: <SortHead column={column} sorted={sorted} onPress={press} /> };
+  });
   return (
-    <DataTable
+    <Table
       caption="Trials"
-      order="newest first"
       className={styles.frame}
       rows={trials}
       keyOf={({ id }) => id}
-      empty="No trials yet."
+      empty="No trials match."
       waiting={8}
-      partial={partial}
-      filter={{
-        label: 'Filter by case, operator or station',
-        text: (trial) => `${trial.case_title} ${trial.operator_name} ${trial.station}`,
-      }}
-      columns={kColumns}
+      columns={columns}
     />
   );
 }
