@@ -209,12 +209,12 @@ TEST_F(Access, ATraineeAndAStationReachTheseRoutesAlone) {
                                                          "reportStation"}));
   EXPECT_EQ(
       reach[Role::technician],
-      (std::set<std::string>{"whoAmI",       "signOut",           "changePassword", "beginCodes",
-                             "confirmCodes", "endCodes",          "description",    "metrics",
-                             "stations",     "makeEnrolmentCode", "revokeStation",  "serverMetrics",
-                             "backups",      "makeBackup",        "verifyBackup",   "sendModel",
-                             "sentModel",    "ownConsent",        "sayConsent",     "station",
-                             "live",         "stopStation",       "limitStation"}));
+      (std::set<std::string>{
+          "whoAmI",        "signOut",       "changePassword", "beginCodes",  "confirmCodes",
+          "endCodes",      "description",   "metrics",        "stations",    "makeEnrolmentCode",
+          "revokeStation", "serverMetrics", "backups",        "makeBackup",  "verifyBackup",
+          "sendModel",     "recallModel",   "sentModel",      "ownConsent",  "sayConsent",
+          "station",       "live",          "stopStation",    "limitStation"}));
 }
 
 TEST_F(Access, ARouteThatNamesNobodyIsRefusedToAll) {

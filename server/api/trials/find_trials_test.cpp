@@ -29,7 +29,8 @@ class FindTrials : public PeopleTest {
   }
   std::vector<std::string> people(const std::string& query) {
     std::vector<std::string> out;
-    for (const Json& trial : found("dora", query)["trials"]) out.push_back(trial["person"]);
+    const Json list = found("dora", query);
+    for (const Json& trial : list["trials"]) out.push_back(trial["person"]);
     return out;
   }
 };
@@ -37,7 +38,6 @@ using People = std::vector<std::string>;
 
 TEST_F(FindTrials, NamesThePersonToWhomATrialWasAssigned) {
   EXPECT_EQ(people(""), (People{"tia", "tom"}));  // newest first
-  EXPECT_EQ(json(get("fay", "/trials/" + trial_of("tom")))["person"], "tom");
 }
 
 TEST_F(FindTrials, SearchesPersonOperatorCaseAndStationWithoutRegardToCase) {

@@ -2,7 +2,7 @@ import { QueryClient } from '@tanstack/react-query';
 import { describe, expect, it, vi } from 'vitest';
 import * as v from 'valibot';
 import { ApiError, sessionQuery, signIn } from '@/api';
-import { requestJson, request } from './client';
+import { requestJson, request, withoutPointer } from './client';
 import { parsePreview } from './preview';
 import { pathSchema, signalsSchema, trialPageSchema, trialSchema } from './schemas';
 
