@@ -35,8 +35,7 @@ std::optional<UnitFactor> factor_of(std::string_view part) {
   char* end = nullptr;
   const double value = std::strtod(power.c_str(), &end);
   const bool sixtieth = std::abs(60.0 * value - std::round(60.0 * value)) < 1e-6;
-  if (power.empty() || *end != '\0' || !(std::abs(value) <= 12.0) || !sixtieth)
-    return std::nullopt;
+  if (power.empty() || *end != '\0' || !(std::abs(value) <= 12.0) || !sixtieth) return std::nullopt;
   return UnitFactor{part.substr(0, caret), value};
 }
 

@@ -30,7 +30,7 @@ struct MemoryCall {
 
 /// What the check of a formula found out.
 struct FormulaFacts {
-  Dimension dimension;         ///< of the result
+  Dimension dimension;               ///< of the result
   std::vector<bool> uses;            ///< by quantity: does the formula name it?
   std::vector<bool> vanishes;        ///< by quantity: is the result surely 0 where it always is 0?
   std::vector<MemoryCall> memories;  ///< those inside another's arguments before it
