@@ -4,260 +4,23 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
-#include "core/require.hpp"
-#include "effects/delayed.hpp"
-#include "effects/expression.hpp"
 #include "lab/identify/fit_report.hpp"
 #include "lab/identify/least_squares.hpp"
 #include "lab/identify/parallel.hpp"
-#include "lab/rigs/probing/parameter_space.hpp"
-#include "lab/rigs/probing/recording.hpp"
+#include "lab/rigs/probing/probing_problem.hpp"
 #include "lab/rigs/probing/statistics.hpp"
-#include "lab/settings.hpp"
-#include "lab/signal/drift.hpp"
-#include "models/probing_runtime.hpp"
 
 namespace tractus {
 namespace lab {
+
 namespace {
 
 using core::Errc;
 using core::Error;
 using core::Result;
 
-class ProbingProblem final : public Problem, public FormulaTerms {
- public:
-  ProbingProblem(ProbingParameterSpace numbers, std::vector<ProbingRecording> trials, bool turns)
-      : numbers_(std::move(numbers)), trials_(std::move(trials)), turns_(turns) {
-    for (const auto& r : trials_) drifts_.push_back(drift_of(r));
-    set_candidates();
-    set_channels();
-    notes_ = numbers_.notes();
-  }
-
-  std::string_view rig() const override { return "probing"; }
-  int trials() const override { return int(trials_.size()); }
-  std::string trial_id(int k) const override { return trial(k).id; }
-  double seconds(int k) const override { return trial(k).seconds(); }
-  const std::vector<Channel>& channels() const override { return channels_; }
-  const std::vector<Candidate>& candidates() const override { return candidates_; }
-  const std::vector<std::string>& notes() const override { return notes_; }
-  std::vector<Parameter> parameters(const Structure& structure) const override {
-    return numbers_.parameters(structure);
-  }
-  effects::Starts starts(std::string_view effect, const Eigen::VectorXd& residual) const override;
-
-  const SelectionThresholds& selection_thresholds() const override {
-    return kSettings.probing_thresholds;
-  }
-  Eigen::Index residual_size(int k) const override {
-    return Eigen::Index(trial(k).measured_thin.size());
-  }
-  void residuals(const Structure& structure, std::span<const double> values, int k,
-                 Eigen::Ref<Eigen::VectorXd> out) const override {
-    raw_residuals(structure, values, k, out);
-    if (!has_drift(structure)) return;
-    const Eigen::VectorXd before = out;
-    drifts_[std::size_t(k)].remove(out);
-    out = (before.array() == 0.0).select(0.0, out);
-  }
-  int free_per_trial(const Structure& structure) const override {
-    return has_drift(structure) ? Drift::kOrders : 0;
-  }
-
-  double noise_floor(const Structure& structure, std::span<const double> values) const override;
-  Residuals full_rate(const Structure& structure, std::span<const double> values,
-                      int k) const override;
-  States states(int k) const override;
-  std::vector<Derived> derived(const Structure& structure, std::span<const double> values,
-                               std::string_view effect) const override;
-  core::Json model(const Structure& structure, std::span<const double> values) const override;
-
-  const FormulaTerms* formula_terms() const override { return turns_ ? nullptr : this; }
-  const effects::ExpressionRig& expressions() const override {
-    return effects::probing_expressions();
-  }
-  FormulaSignals signals(const Structure& structure, std::span<const double> values,
-                         int k) const override;
-  void response(const Structure& structure, int k, std::span<const double> added,
-                Eigen::Ref<Eigen::VectorXd> out) const override;
-  std::vector<bool> moving(int k) const override;
-  Work work_of_cycles(const Structure& structure, std::span<const double> values) const override;
-  std::unique_ptr<Problem> with(UserEffects more) const override {
-    auto out = std::make_unique<ProbingProblem>(*this);
-    out->numbers_.add(more);
-    out->candidates_.clear();
-    out->set_candidates();
-    return out;
-  }
-
-  void note(std::string words) { notes_.push_back(std::move(words)); }
-
-  /// Where the recordings' force lies in time against the motion if the given model is right, as every search's start.
-  void estimate_delay(int threads);
-  /// Estimates the sensors' noise anew from what the base with these values leaves.
-  void estimate_noise(std::span<const double> values);
-
-  /// Weighs the residuals anew with the borders and dampings that these values have.
-  void focus(std::span<const double> values) {
-    if (turns_) return;
-    const auto law = numbers_.with({}, values).law(kProbingRecording.longest_model_m);
-    core::require(bool(law), "a fitted model runs");
-    for (std::size_t k = 0; k < trials_.size(); ++k) {
-      weigh(*law, trials_[k]);
-      drifts_[k] = drift_of(trials_[k]);
-    }
-    set_channels();
-    floor_of_bone_ = channels_.front().noise_floor;
-    channels_.front().noise_floor =
-        std::hypot(floor_of_bone_, floor_of_effects(numbers_.with({}, values)));
-  }
-
- private:
-  bool has_drift(const Structure& structure) const { return !numbers_.drift(structure).empty(); }
-  const ProbingRecording& trial(int k) const { return trials_[std::size_t(k)]; }
-  static Drift drift_of(const ProbingRecording& r);
-  void set_candidates();
-  void set_channels();
-
-  /// What the law says, and by how much dry friction at rest may differ from it.
-  struct Predicted {
-    models::ProbingForces forces;
-    std::vector<double> at_rest_N;  // (or N·m) one per sample of `rest`; empty without dry friction
-  };
-  double floor_of_effects(const models::ProbingModel& model) const;
-  std::vector<double> dry_at_rest(const models::ProbingModel& model,
-                                  const ProbingRecording& r) const;
-  Predicted forces(const Structure& structure, std::span<const double> values,
-                   const ProbingRecording& r) const {
-    const models::ProbingModel model = numbers_.with(structure, values);
-    const auto runtime = models::ProbingRuntime::make(model, kProbingRecording.longest_model_m);
-    core::require(bool(runtime), "values within their bounds make a model that runs");
-    Predicted out;
-    runtime->predict(r.motion, out.forces);
-    effects::delay(r.motion.t_s, numbers_.force_delay_s(structure, values), out.forces.fz_N);
-    out.at_rest_N = dry_at_rest(model, r);
-    for (std::size_t i = 0; i < out.at_rest_N.size(); ++i) {  // the middle of what it may be
-      const std::size_t k = r.rest[i];
-      if (turns_)
-        out.forces.tz_Nm[k] -=
-            out.at_rest_N[i] * effects::direction(r.motion.omega_rad_s[k], r.motion.rest_rad_s);
-      else
-        out.forces.fz_N[k] -=
-            out.at_rest_N[i] * effects::direction(r.motion.v_m_s[k], r.motion.rest_m_s);
-    }
-    return out;
-  }
-  void raw_residuals(const Structure& structure, std::span<const double> values, int k,
-                     Eigen::Ref<Eigen::VectorXd> out) const {
-    const ProbingRecording& r = trial(k);
-    const auto predicted = forces(structure, values, r);
-    std::vector<double> thin(r.measured_thin.size());
-    r.decimator.apply(turns_ ? predicted.forces.tz_Nm : predicted.forces.fz_N, thin);
-    std::vector<double> either_way(thin.size(), 0.0);
-    if (!predicted.at_rest_N.empty())
-      r.decimator.apply_sizes(r.rest, predicted.at_rest_N, either_way);
-    for (std::size_t j = 0; j < thin.size(); ++j)
-      out(Eigen::Index(j)) = beyond(r.measured_thin[j] - thin[j], either_way[j]) / r.sd_thin[j];
-  }
-  /// The fitted trend of a trial at its full rate, N.
-  Eigen::VectorXd drift(const Structure& structure, std::span<const double> values, int k) const {
-    Eigen::VectorXd residual(residual_size(k));
-    raw_residuals(structure, values, k, residual);
-    const Drift& d = drifts_[std::size_t(k)];
-    return d.at(trial(k).motion.t_s, d.fit(residual));
-  }
-
-  ProbingParameterSpace numbers_;
-  std::vector<ProbingRecording> trials_;
-  std::vector<Drift> drifts_;
-  std::vector<Candidate> candidates_;
-  std::vector<Channel> channels_;
-  std::vector<std::string> notes_;
-  bool turns_;
-  double floor_of_bone_ =
-      0.0;  // the primary's noise floor without what effects make of the motion's errors
-};
-
-void ProbingProblem::estimate_delay(int threads) {
-  const auto parameters = numbers_.parameters({});
-  const auto delay = std::ranges::find_if(
-      parameters, [](const Parameter& p) { return p.pointer.starts_with("/sensor/"); });
-  if (delay == parameters.end()) return;
-  std::vector<double> values;
-  for (const Parameter& p : parameters) values.push_back(p.start);
-  const Residual residual(*this, threads);
-  const double scale = robust_scale(residual({}, values));
-  double& delay_s = values[std::size_t(delay - parameters.begin())];
-  const auto loss = [&](double at_s) {
-    delay_s = at_s;
-    const double away = at_s / delay->prior_sd;
-    return robust_loss(residual({}, values), scale) + away * away;
-  };
-  double best_s = 0.0, least = loss(0.0);
-  for (double step_s = 0.5 * delay->high; step_s > 0.02 * delay->high; step_s *= 0.5)
-    for (const double at_s : {best_s - step_s, best_s + step_s})
-      if (at_s >= delay->low && at_s <= delay->high)
-        if (const double now = loss(at_s); now < least) least = now, best_s = at_s;
-  numbers_.begin_at_delay(best_s);
-}
-
-void ProbingProblem::estimate_noise(std::span<const double> values) {
-  if (turns_) return;
-  for (std::size_t k = 0; k < trials_.size(); ++k) {
-    ProbingRecording& r = trials_[k];
-    const auto full = full_rate({}, values, int(k)).channels.front();
-    std::vector<double> thin(r.measured_thin.size());
-    r.decimator.apply(full, thin);
-    lab::estimate_noise(r, full, thin);
-  }
-}
-
-/// What the motion's errors make of a model's effects, root mean square over the judged samples: the speed's, then the
-/// acceleration's standard error is added to one sample and taken from the next, and what the prediction differs by,
-/// beyond that of the bone alone, adds in squares.
-double ProbingProblem::floor_of_effects(const models::ProbingModel& model) const {
-  if (turns_ || model.effects.empty()) return 0.0;
-  models::ProbingModel bone = model;
-  bone.effects.clear();
-  const auto runtime = models::ProbingRuntime::make(model, kProbingRecording.longest_model_m),
-             of_bone = models::ProbingRuntime::make(bone, kProbingRecording.longest_model_m);
-  core::require(runtime && of_bone, "values within their bounds make a model that runs");
-  const auto difference = [](const models::ProbingRuntime& of, const effects::ProbingMotion& a,
-                             const effects::ProbingMotion& b) {
-    models::ProbingForces there, here;
-    of.predict(a, there);
-    of.predict(b, here);
-    for (std::size_t k = 0; k < there.fz_N.size(); ++k) there.fz_N[k] -= here.fz_N[k];
-    return there.fz_N;
-  };
-  double sum = 0.0, count = 0.0;
-  for (const ProbingRecording& r : trials_) {
-    std::vector<double> variance(r.size(), 0.0);
-    const auto move = [&](auto member, const std::vector<double>& sd) {
-      effects::ProbingMotion motion = r.motion;
-      for (std::size_t k = 0; k < sd.size(); ++k)
-        (motion.*member)[k] += k % 2 == 0 ? sd[k] : -sd[k];
-      const auto all = difference(*runtime, motion, r.motion),
-                 own = difference(*of_bone, motion, r.motion);
-      for (std::size_t k = 0; k < variance.size(); ++k)
-        variance[k] += std::max(0.0, all[k] * all[k] - own[k] * own[k]);
-    };
-    move(&effects::ProbingMotion::v_m_s, r.v_sd_m_s);
-    move(&effects::ProbingMotion::a_m_s2, r.a_sd_m_s2);
-    for (std::size_t k = 0; k < r.size(); ++k)
-      if (r.judgement[k] == Judgement::judged) sum += variance[k], count += 1.0;
-  }
-  return count > 0.0 ? std::sqrt(sum / count) : 0.0;
-}
-
-double ProbingProblem::noise_floor(const Structure& structure,
-                                   std::span<const double> values) const {
-  if (structure.effects.empty()) return channels_.front().noise_floor;
-  return std::hypot(floor_of_bone_, floor_of_effects(numbers_.with(structure, values)));
-}
+}  // namespace
 
 /// At rest dry friction takes whatever value within its size holds the probe (Coulomb's law is
 /// set-valued there), so a residual counts from there on.
@@ -401,110 +164,6 @@ std::vector<Derived> ProbingProblem::derived(const Structure& structure,
   return {{numbers_.facts_of(effect).params.front().name, sum / n, std::sqrt(variance) / n}};
 }
 
-/// The resistance of the bone over a motion, N, as a formula is told it.
-std::vector<double> resistance_N(models::ProbingModel model, const effects::ProbingMotion& motion) {
-  std::erase_if(model.effects, [](const effects::EffectInstance& use) {
-    const auto* info = effects::find_probing_effect(use.id);
-    return !info || info->facts.kind == effects::Kind::measurement;
-  });
-  const auto without = models::ProbingRuntime::make(model, kProbingRecording.longest_model_m);
-  const auto base = effects::Expression::from_json(
-      {{"format", effects::kEffectFormat},
-       {"id", "expression:base"},
-       {"rig", "probing"},
-       {"adds_to", "fz_N"},
-       {"formula", "c * base_N"},
-       {"parameters", {{"c", {{"unit", "1"}, {"initial", 1}, {"low", 0}, {"high", 2}}}}}},
-      "", effects::probing_expressions());
-  core::require(bool(base), "a formula of one product is right");
-  model.effects.push_back(base->use());
-  const auto with = models::ProbingRuntime::make(model, kProbingRecording.longest_model_m);
-  core::require(without && with, "values within their bounds make a model that runs");
-  models::ProbingForces once, twice;
-  without->predict(motion, once);
-  with->predict(motion, twice);
-  for (std::size_t k = 0; k < once.fz_N.size(); ++k) twice.fz_N[k] -= once.fz_N[k];
-  return std::move(twice.fz_N);
-}
-
-FormulaSignals ProbingProblem::signals(const Structure& structure, std::span<const double> values,
-                                       int k) const {
-  const effects::ProbingMotion& m = trial(k).motion;
-  FormulaSignals out;
-  out.states = {
-      m.x_m,         m.v_m_s, m.a_m_s2, m.theta_rad,
-      m.omega_rad_s, m.t_s,   m.tz_Nm,  resistance_N(numbers_.with(structure, values), m)};
-  for (double& v : out.states[1])
-    if (std::abs(v) <= m.rest_m_s) v = 0.0;
-  for (std::size_t i = 0; i < m.size(); ++i)
-    out.steps.push_back({i == 0 ? 0.0 : m.t_s[i] - m.t_s[i - 1], m.rest_m_s});
-  return out;
-}
-
-void ProbingProblem::response(const Structure& structure, int k, std::span<const double> added,
-                              Eigen::Ref<Eigen::VectorXd> out) const {
-  const ProbingRecording& r = trial(k);
-  r.decimator.apply(added, std::span(out.data(), std::size_t(out.size())));
-  for (Eigen::Index j = 0; j < out.size(); ++j) out(j) /= -r.sd_thin[std::size_t(j)];
-  if (has_drift(structure)) drifts_[std::size_t(k)].remove(out);
-}
-
-std::vector<bool> ProbingProblem::moving(int k) const {
-  const ProbingRecording& r = trial(k);
-  std::vector<double> share(r.measured_thin.size());
-  const std::vector<double> one(r.rest.size(), 1.0);
-  r.decimator.apply_sizes(r.rest, one, share);
-  std::vector<bool> out;
-  for (const double s : share) out.push_back(s < kProbingRecording.least_moving_rest);
-  return out;
-}
-
-bool contains_id(const Structure& structure, const std::string& id) {
-  return std::ranges::find(structure.effects, id) != structure.effects.end();
-}
-
-FormulaTerms::Work ProbingProblem::work_of_cycles(const Structure& structure,
-                                                  std::span<const double> values) const {
-  models::ProbingModel model = numbers_.with(structure, values), base = model;
-  std::erase_if(base.effects, [&](const effects::EffectInstance& use) {
-    return effects::is_expression(use.id) && contains_id(structure, use.id);
-  });
-  const auto with = models::ProbingRuntime::make(model, kProbingRecording.longest_model_m);
-  const auto without = models::ProbingRuntime::make(base, kProbingRecording.longest_model_m);
-  core::require(with && without, "values within their bounds make a model that runs");
-  double least_m = 1e9, most_m = -1e9, fastest_m_s = 1e-4;
-  for (const ProbingRecording& r : trials_) {
-    const auto [a, b] = std::ranges::minmax(r.motion.x_m);
-    least_m = std::min(least_m, a), most_m = std::max(most_m, b);
-    for (const double v : r.motion.v_m_s) fastest_m_s = std::max(fastest_m_s, std::abs(v));
-  }
-  const double half_m = 0.5 * (most_m - least_m), middle_m = 0.5 * (most_m + least_m);
-  constexpr int kSamples = 4000;  // of a cycle
-  Work out{std::numeric_limits<double>::infinity(), 0.0};
-  for (const double share : {0.1, 0.8}) {
-    const double w = share * fastest_m_s / half_m;
-    effects::ProbingMotion m{.rest_m_s = 0.0};
-    for (int i = 0; i <= 3 * kSamples; ++i) {
-      const double t = 2.0 * std::numbers::pi * i / kSamples / w;
-      m.t_s.push_back(t);
-      m.x_m.push_back(middle_m - half_m * std::cos(w * t));
-      m.v_m_s.push_back(half_m * w * std::sin(w * t));
-      m.a_m_s2.push_back(half_m * w * w * std::cos(w * t));
-    }
-    models::ProbingForces all, own;
-    with->predict(m, all);
-    without->predict(m, own);
-    double taken_J = 0.0, turned_J = 0.0;
-    for (std::size_t i = 2 * kSamples + 1; i < m.size(); ++i) {
-      const double mean_N = 0.5 * (all.fz_N[i] + all.fz_N[i - 1] - own.fz_N[i] - own.fz_N[i - 1]);
-      const double step_J = mean_N * (m.x_m[i] - m.x_m[i - 1]);
-      taken_J += step_J, turned_J += std::abs(step_J);
-    }
-    if (taken_J < out.taken_J) out = {taken_J, turned_J};
-  }
-  return out;
-}
-
 core::Json ProbingProblem::model(const Structure& structure, std::span<const double> values) const {
   models::ProbingModel model = numbers_.with(structure, values);
   const std::string drift = numbers_.drift(structure);
@@ -512,6 +171,8 @@ core::Json ProbingProblem::model(const Structure& structure, std::span<const dou
     model.effects.push_back({drift, {range.value}});
   return model.to_json();
 }
+
+namespace {
 
 /// Cuts the ends of the trials of a set that is longer than it need be; says so.
 std::string shorten(trial::ProbingSet& set) {
