@@ -9,7 +9,7 @@ it('writes the numbers of a chart with a header, quoted where RFC 4180 asks for 
   ];
   // A cell that begins like a formula is kept from being one (OWASP, CSV injection).
   expect(await csvText({ columns: ['trial', 'share', 'case'], rows })).toBe(
-    'trial,share,case\n1,0.25,"soft, cancellous"\n2,,\'=1+1',
+    'trial,share,case\n1,0.25,"soft, cancellous"\n2,,"\'=1+1"',
   );
 });
 

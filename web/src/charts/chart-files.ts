@@ -43,7 +43,6 @@ export function svgText(svg: SVGSVGElement): string {
   ] as const)
     ground.setAttribute(name, value);
   copy.prepend(ground);
-  copy.setAttribute('xmlns', 'http://www.w3.org/2000/svg');
   return new XMLSerializer().serializeToString(copy);
 }
 

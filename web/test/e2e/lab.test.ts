@@ -124,7 +124,8 @@ describe.skipIf(bin === undefined)('a set with a hidden effect', () => {
     await page.getByRole('link', { name: /^Add Coulomb friction and publish/ }).click();
     await page.getByRole('button', { name: 'Publish' }).click();
     await page.locator('[data-part="published"]').waitFor();
-    await page.getByRole('button', { name: 'Send to all stations' }).click();
+    await page.getByRole('button', { name: 'Send to all stations…' }).click();
+    await page.getByRole('dialog').getByRole('button', { name: 'Send', exact: true }).click();
     await page.locator('[data-part="sent"]').getByText('pending').waitFor();
     const at = ['--data', join(served.folder, 'station'), '--server', served.url, '--token-file', token];
     execFileSync(join(bin ?? '', 'tractus-station'), ['sync', ...at]);

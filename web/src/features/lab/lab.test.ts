@@ -5,9 +5,8 @@ import { differences } from './differences';
 import { primaryUnit } from './comparison-parts';
 import { kBlankOwn, mistypedStates, ownEffect, parametersIn, withFormula } from './own-effect';
 import { parameterName } from './parameters';
-import { verdictOf } from './verdict';
+import { isNotBetter, verdictOf } from './verdict';
 import { channelQuantity, effectName, joined } from './names';
-import { isNotBetter } from './publish-step';
 import { pack, problemsOf, rootOf } from './zip-files';
 
 const plain = (text: string) => text.replaceAll('\u202f', ' ');

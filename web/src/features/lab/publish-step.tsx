@@ -18,6 +18,7 @@ import { primaryUnit } from './comparison-parts';
 import styles from './lab.module.css';
 import { SendCard } from './send-card';
 import { effectName, joined, workAddress } from './names';
+import { isNotBetter } from './verdict';
 
 interface Props {
   readonly model: ModelVersion;
@@ -32,13 +33,6 @@ export function candidateText(run: LabRun): string {
     ? joined(run.diagnosis.effects.map(({ id }) => effectName(id))) || 'refitted'
     : addedEffects(run);
   return `${what}: ${formatFigure(error, primaryUnit(run))} on held-out trials`;
-}
-
-/** Whether a run's model has no smaller error on held-out trials than the model that it came from; unknown is not worse. */
-export function isNotBetter({ fit, diagnosis }: Pick<LabRun, 'fit' | 'diagnosis'>): boolean {
-  const before = fit ? fit.base.rmse : diagnosis?.base.held_out_rmse,
-    after = fit ? fit.held_out_rmse : diagnosis?.steps.at(-1)?.held_out_rmse;
-  return typeof before === 'number' && typeof after === 'number' && after >= before;
 }
 
 function Candidate({

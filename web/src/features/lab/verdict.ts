@@ -1,5 +1,5 @@
 /** The verdict of a diagnosis in the server's words, and how it is shown. */
-import type { Diagnosis } from '@/api';
+import type { Diagnosis, LabRun } from '@/api';
 import { formatShare, share } from '@/units';
 
 export interface Verdict {
@@ -24,4 +24,11 @@ export function verdictOf({ verdict, headline, detail, probability }: Diagnosis)
     headline: headline || kHeadlines[verdict],
     detail: [detail, certainty].filter(Boolean).join(' '),
   };
+}
+
+/** Whether a run's model has no smaller error on held-out trials than the model that it came from; unknown is not worse. */
+export function isNotBetter({ fit, diagnosis }: Pick<LabRun, 'fit' | 'diagnosis'>): boolean {
+  const before = fit ? fit.base.rmse : diagnosis?.base.held_out_rmse,
+    after = fit ? fit.held_out_rmse : diagnosis?.steps.at(-1)?.held_out_rmse;
+  return typeof before === 'number' && typeof after === 'number' && after >= before;
 }

@@ -5,8 +5,8 @@ import userEvent from '@testing-library/user-event';
 import { useState } from 'react';
 import * as v from 'valibot';
 import { afterEach, describe, expect, it, vi } from 'vitest';
+import { endSession, onSessionEnd } from '@/api';
 import { requestJson } from '@/api/client';
-import { makeClient } from '@/app';
 import { noteSignOut } from './ended';
 import { SessionGate } from './session-gate';
 
@@ -124,7 +124,8 @@ describe('a session that ends by itself', () => {
         ? json({ id: who.name, name: who.name, role: 'admin' }, 200)
         : json({ saved: who.name }, 200);
     });
-    const client = makeClient();
+    const client = new QueryClient({ defaultOptions: { queries: { retry: false } } });
+    onSessionEnd(() => endSession(client));
     function Form() {
       const [saved, setSaved] = useState('');
       return (
