@@ -8,7 +8,8 @@ namespace tractus {
 namespace effects {
 namespace {
 
-constexpr double kMostDecay = 50.0;  // e^50: what grows is cut there
+constexpr double kMostDecay = 50.0;      // e^50: what grows is cut there
+constexpr double kMostStretch = 1000.0;  // of the yield: hysteresis that hardens is held there
 
 /// z after the way w ≥ 0 of dz/dw = goal_rate − rate z, exact; the limit for rate 0.
 double relaxed(double z, double source, double rate, double way) {
@@ -146,7 +147,9 @@ double advance(MemoryOperator which, const MemoryArguments& of, const MemoryStep
       return s[0];
     }
     case MemoryOperator::bouc_wen: {
-      s[0] = of[1] > 0.0 ? bouc_wen_after(s[0], u - s[1], of[1], of[2]) : 0.0;
+      const double most = kMostStretch * std::max(of[1], 0.0);
+      s[0] =
+          of[1] > 0.0 ? std::clamp(bouc_wen_after(s[0], u - s[1], of[1], of[2]), -most, most) : 0.0;
       s[1] = u;
       return s[0];
     }

@@ -42,19 +42,19 @@ trial::ProbingSet recorded_with(const HiddenForce& hidden) {
   return set;
 }
 
-struct Found {
+struct FoundFormulas {
   std::unique_ptr<Problem> problem;
   Diagnosis diagnosis;
   Discovery discovery;
 };
 
 /// The search on top of the base alone, as if the catalogue had found nothing.
-Found found_in(const HiddenForce& hidden) {
+FoundFormulas found_in(const HiddenForce& hidden) {
   models::ProbingModel model;
   model.layers = {{0.0, 0.05, 3800.0, 2100.0, 0.006}};
   auto problem = make_probing_problem(model, recorded_with(hidden), {.threads = 2});
   EXPECT_TRUE(problem) << problem.error().what;
-  Found out{std::move(*problem), {}, {}};
+  FoundFormulas out{std::move(*problem), {}, {}};
   const auto base = fit(*out.problem, {}, {.threads = 2});
   EXPECT_TRUE(base) << base.error().what;
   out.diagnosis.verdict = Verdict::unexplained;
@@ -69,7 +69,7 @@ Found found_in(const HiddenForce& hidden) {
 double sign_of(double v) { return v > 0.0 ? 1.0 : v < 0.0 ? -1.0 : 0.0; }
 
 TEST(Discovery, WritesDownFrictionInProportionToTheLoad) {
-  const Found found = found_in(
+  const FoundFormulas found = found_in(
       [](double, double v, double bone, bool) { return 0.2 * std::abs(bone) * sign_of(v); });
   ASSERT_FALSE(found.discovery.proposals.empty()) << found.discovery.remark;
   const Proposal& best = found.discovery.proposals.front();
@@ -92,7 +92,7 @@ TEST(Discovery, WritesDownFrictionInProportionToTheLoad) {
 TEST(Discovery, FindsTheNumbersOfHysteresisThatHardens) {
   // dz = dx − (|dx| z + g dx |z|)/δ, δ = 1.5 mm, g = −1.2; 1500 N/m; Euler's rule at 200 steps a sample.
   double z = 0.0, before = 0.0;
-  const Found found = found_in([&](double x, double, double, bool first) {
+  const FoundFormulas found = found_in([&](double x, double, double, bool first) {
     if (first) z = 0.0, before = x;
     const double dx = (x - before) / 200.0;
     for (int k = 0; k < 200; ++k) z += dx - (std::abs(dx) * z - 1.2 * dx * std::abs(z)) / 1.5e-3;
@@ -109,7 +109,7 @@ TEST(Discovery, FindsTheNumbersOfHysteresisThatHardens) {
 
 TEST(Discovery, SaysThatAFunctionIsUnknownWhereNoFormulaIsIt) {
   // A rough surface: a force of the depth alone, by no formula of the grammar.
-  const Found found = found_in([](double x, double, double, bool) {
+  const FoundFormulas found = found_in([](double x, double, double, bool) {
     double out = 0.0;
     for (const double k : {700.0, 1130.0, 1570.0, 1990.0, 2470.0})
       out += 0.8 * std::sin(k * x + std::cos(3.0 * k));
