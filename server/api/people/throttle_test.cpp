@@ -175,8 +175,8 @@ TEST_F(Throttle, RoutesThatHashAreInTheHashingLane) {
   for (const RouteInfo& route : routes())
     if (route.lane == http::Lane::hashing) hashing.insert(route.id);
   const std::set<std::string> expected{"addAccount", "beginCodes",     "changePassword",
-                                       "endCodes",   "resetPassword",  "setBadge",
-                                       "signIn",     "signInAtStation"};
+                                       "endCodes",   "importAccounts", "resetPassword",
+                                       "setBadge",   "signIn",         "signInAtStation"};
   EXPECT_EQ(hashing, expected);
 }
 
