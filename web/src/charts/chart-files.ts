@@ -24,7 +24,7 @@ const kDrawn = [
 ] as const;
 const kPixelsPerPoint = 2;
 
-/** The drawing as it looks on the page, on white. */
+/** The drawing as it looks, on the ground of the page. */
 export function svgText(svg: SVGSVGElement): string {
   const copy = svg.cloneNode(true) as SVGSVGElement;
   const shown = [svg, ...svg.querySelectorAll<SVGElement>('*')];
@@ -39,7 +39,7 @@ export function svgText(svg: SVGSVGElement): string {
   for (const [name, value] of [
     ['width', '100%'],
     ['height', '100%'],
-    ['fill', getComputedStyle(svg.closest('section, main, body') ?? document.body).backgroundColor],
+    ['fill', getComputedStyle(document.body).backgroundColor],
   ] as const)
     ground.setAttribute(name, value);
   copy.prepend(ground);
