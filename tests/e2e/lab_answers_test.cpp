@@ -218,7 +218,10 @@ TEST_F(LabAnswers, AFormulaIsProposedForWhatNoCatalogueHasAndCanBeAdded) {
   EXPECT_NE(text.find("dry friction (Coulomb) in proportion to the load"), std::string::npos);
 
   text.clear();
-  ASSERT_EQ(run("fit --json --effect " + at("found/proposal_1.json") + " " + sources, text), 0)
+  ASSERT_EQ(run("fit --json --out " + at("fitted.json") + " --effect " +
+                    at("found/proposal_1.json") + " " + sources,
+                text),
+            0)
       << text;
   const auto fit = core::parse_json(text, "fit");
   ASSERT_TRUE(fit) << text.substr(0, 300);
