@@ -105,14 +105,10 @@ bool more_is_missing(const ResidualDependence& rest, const Fit& fit) {
 /// Do the effects take away most of what there was to take?
 bool explain_most(const ResidualDependence& rest, const Fit& base, const Fit& fit) {
   const auto square = [](double v) { return v * v; };
-  const double after = square(fit.held_out_rmse);
-  const double least =
-      std::min((1.0 - rest.predictable) * after, std::max(square(fit.noise_floor), 0.0));
-  const double floor =
-      rest.predictable > 0.0 && fit.held_out_rmse < kAnswer.far_above_floor * fit.noise_floor
-          ? (1.0 - rest.predictable) * after
-          : least;
-  return after - floor < kAnswer.most_left * (square(base.held_out_rmse) - floor);
+  const double after = square(fit.held_out_rmse), unpredicted = (1.0 - rest.predictable) * after;
+  const bool far = fit.held_out_rmse > kAnswer.far_above_floor * fit.noise_floor;
+  const double least = far ? std::min(unpredicted, square(fit.noise_floor)) : unpredicted;
+  return after - least < kAnswer.most_left * (square(base.held_out_rmse) - least);
 }
 
 /// Probability that more is missing than the model has: by the error over the floor, and by what signals predict of it.

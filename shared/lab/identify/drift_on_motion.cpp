@@ -8,6 +8,7 @@
 #include "lab/identify/effect_screen.hpp"
 #include "lab/settings.hpp"
 #include "lab/signal/drift.hpp"
+#include "lab/signal/fading_memory.hpp"
 
 namespace tractus {
 namespace lab {
@@ -20,16 +21,6 @@ struct Slow {
   Eigen::VectorXd trend;
   Eigen::MatrixXd memories;  // [row][memory], the last column 1
 };
-
-std::vector<double> memory(std::span<const double> t_s, std::span<const double> v_m_s,
-                           double time_s) {
-  std::vector<double> out(t_s.size(), 0.0);
-  for (std::size_t k = 1; k < t_s.size(); ++k) {
-    const double kept = std::exp(-(t_s[k] - t_s[k - 1]) / time_s);
-    out[k] = out[k - 1] * kept + v_m_s[k] * time_s * (1.0 - kept);
-  }
-  return out;
-}
 
 Slow slow_of(const Problem& problem, const Solution& at, std::string_view effect,
              const std::vector<double>& v_m_s, int trial) {
@@ -50,7 +41,7 @@ Slow slow_of(const Problem& problem, const Solution& at, std::string_view effect
   Slow out{thinned([&](std::size_t k) { return without.channels[0][k] - with.channels[0][k]; }),
            Eigen::MatrixXd::Ones(rows, Eigen::Index(kDrift.memories_s.size()) + 1)};
   for (std::size_t m = 0; m < kDrift.memories_s.size(); ++m) {
-    const auto left = memory(with.t_s, v_m_s, kDrift.memories_s[m]);
+    const auto left = fading_memory(with.t_s, v_m_s, kDrift.memories_s[m]);
     const Eigen::VectorXd raw = thinned([&](std::size_t k) { return left[k]; });
     out.memories.col(Eigen::Index(m)) = trends.at(t_s, trends.fit(raw));
   }

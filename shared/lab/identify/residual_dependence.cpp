@@ -8,6 +8,7 @@
 
 #include "lab/identify/parallel.hpp"
 #include "lab/settings.hpp"
+#include "lab/signal/fading_memory.hpp"
 
 namespace tractus {
 namespace lab {
@@ -24,17 +25,6 @@ struct Blocks {
   std::vector<double> count;  // samples of a block
   double squares = 0.0;       // of the error's components over all judged samples
 };
-
-/// Σ v Δt that fades with a time constant: the memory of a first-order lag.
-std::vector<double> faded(std::span<const double> t_s, const std::vector<double>& v,
-                          double time_s) {
-  std::vector<double> out(t_s.size(), 0.0);
-  for (std::size_t k = 1; k < t_s.size(); ++k) {
-    const double kept = std::exp(-(t_s[k] - t_s[k - 1]) / time_s);
-    out[k] = out[k - 1] * kept + v[k] * time_s * (1.0 - kept);
-  }
-  return out;
-}
 
 /// How far the motion has come since it last turned.
 std::vector<double> since_reversal(const std::vector<double>& x, const std::vector<double>& v) {
@@ -58,7 +48,7 @@ States with_memory(States states, std::span<const double> t_s) {
   const std::vector<double> x = states.values[depth], v = states.values[velocity];
   for (const double time_s : kDependence.memories_s) {
     states.names.push_back("earlier velocity");
-    states.values.push_back(faded(t_s, v, time_s));
+    states.values.push_back(fading_memory(t_s, v, time_s));
   }
   states.names.push_back("way since reversal");
   states.values.push_back(since_reversal(x, v));
