@@ -8,6 +8,7 @@
 
 #include "lab/identify/parallel.hpp"
 #include "lab/settings.hpp"
+#include "lab/signal/knots.hpp"
 
 namespace tractus {
 namespace lab {
@@ -61,13 +62,6 @@ std::vector<double> knots_of(const SignalCourse& course, int count) {
     if (apart.empty() || v - apart.back() > 1e-4 * size) apart.push_back(v);
   out = std::move(apart);
   return out.size() < 3 ? std::vector<double>() : out;
-}
-
-/// Where a value lies between the knots: the first of the two, and the weight of the second.
-std::pair<std::size_t, double> place_between(const std::vector<double>& knots, double v) {
-  const auto above = std::size_t(std::ranges::upper_bound(knots, v) - knots.begin());
-  const std::size_t at = std::clamp<std::size_t>(above, 1, knots.size() - 1) - 1;
-  return {at, std::clamp((v - knots[at]) / (knots[at + 1] - knots[at]), 0.0, 1.0)};
 }
 
 using SignalCourses = std::vector<const SignalCourse*>;

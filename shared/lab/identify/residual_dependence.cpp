@@ -9,6 +9,7 @@
 #include "lab/identify/parallel.hpp"
 #include "lab/settings.hpp"
 #include "lab/signal/fading_memory.hpp"
+#include "lab/signal/knots.hpp"
 
 namespace tractus {
 namespace lab {
@@ -148,26 +149,19 @@ class Hats {
   /// take(column, value).
   template <class Take>
   void at(const Blocks& fold, std::size_t block, const Take& take) const {
-    const auto [i, u] = between(knots_a_, fold.signals[a_][block]);
+    const auto [first, u] = place_between(knots_a_, fold.signals[a_][block]);
+    const auto i = Eigen::Index(first);
     if (!pair_) {
       take(i, 1.0 - u), take(i + 1, u);
       return;
     }
-    const auto [j, w] = between(knots_b_, fold.signals[b_][block]);
-    const auto n = Eigen::Index(knots_b_.size());
+    const auto [second, w] = place_between(knots_b_, fold.signals[b_][block]);
+    const auto j = Eigen::Index(second), n = Eigen::Index(knots_b_.size());
     take(i * n + j, (1.0 - u) * (1.0 - w)), take(i * n + j + 1, (1.0 - u) * w);
     take((i + 1) * n + j, u * (1.0 - w)), take((i + 1) * n + j + 1, u * w);
   }
 
  private:
-  /// The first of the two knots that a value lies between, and the weight of the second.
-  static std::pair<Eigen::Index, double> between(const std::vector<double>& knots, double v) {
-    const auto above = std::ranges::upper_bound(knots, v) - knots.begin();
-    const auto at = std::clamp<std::ptrdiff_t>(above - 1, 0, std::ptrdiff_t(knots.size()) - 2);
-    const double low = knots[std::size_t(at)], high = knots[std::size_t(at) + 1];
-    return {at, std::clamp((v - low) / (high - low), 0.0, 1.0)};
-  }
-
   std::size_t a_ = 0, b_ = 0;
   bool pair_ = false;
   std::vector<double> knots_a_, knots_b_;

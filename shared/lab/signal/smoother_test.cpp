@@ -9,6 +9,7 @@
 
 #include "lab/signal/decimator.hpp"
 #include "lab/signal/drift.hpp"
+#include "lab/signal/fading_memory.hpp"
 
 namespace tractus {
 namespace lab {
@@ -45,6 +46,15 @@ double rms_of_difference(const std::vector<double>& a, const std::vector<double>
 TEST(Smoother, NoiseIsFoundWithinAFewPercent) {
   for (const double noise : {5e-7, 5e-6})
     EXPECT_NEAR(noise_sd(sines(1000.0, 8.0, noise).y), noise, 0.04 * noise);
+}
+
+TEST(FadingMemory, OfAConstantSpeedIsThatOfAFirstOrderLag) {
+  // y' = v − y/τ from 0: y = vτ(1 − e^(−t/τ)).
+  std::vector<double> t_s, v_m_s;
+  for (int k = 0; k < 400; ++k) t_s.push_back(0.003 * k + 0.001 * (k % 2)), v_m_s.push_back(0.02);
+  const auto y_m = fading_memory(t_s, v_m_s, 0.15);
+  for (std::size_t k = 0; k < t_s.size(); ++k)
+    EXPECT_NEAR(y_m[k], 0.02 * 0.15 * (1.0 - std::exp(-t_s[k] / 0.15)), 1e-12);
 }
 
 TEST(Decimator, KnowsTheThirdDifferencesOfWhiteNoise) {
