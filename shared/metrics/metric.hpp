@@ -71,15 +71,18 @@ struct TableCell {
   std::string column;  ///< "Mean"
 };
 
+/// Of trials of either rig.
+inline constexpr std::optional<trial::Rig> kBothRigs;
+
 struct MetricInfo {
-  std::string id;          ///< "force_xy_mean"
-  std::string label;       ///< "Mean transverse force"
-  std::string unit;        ///< "N", "s", "1"
-  std::string definition;  ///< one sentence with the rule
-  std::string source;      ///< paper, table or "own definition"
+  std::string id;                 ///< "force_xy_mean"
+  std::string label;              ///< "Mean transverse force"
+  std::string unit;               ///< "N", "s", "1"
+  std::string definition;         ///< one sentence with the rule
+  std::string source;             ///< paper, table or "own definition"
+  std::optional<trial::Rig> rig;  ///< whose trials it is of: of one rig, or kBothRigs
   Score (*compute)(const Subject& subject);
-  std::optional<trial::Rig> rig = trial::Rig::palpation;  ///< whose trials it is of; nothing: both
-  bool (*is_of)(const trial::Trial& trial) = nullptr;     ///< of which of them; null: of all
+  bool (*is_of)(const trial::Trial& trial) = nullptr;  ///< of which of them; null: of all
   ShownAs shown_as = ShownAs::number;
   std::optional<TableCell> cell = {};  ///< nothing: the value stands by itself
   /// Place among the scores that a trainee's page follows from trial to trial, 1 first; 0: not

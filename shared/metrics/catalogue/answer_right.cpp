@@ -31,8 +31,8 @@ MetricInfo answer_right() {
       "1 if the last answer says whether there is a breach and, in palpation if there is, in "
       "which wall; else 0.",
       "own definition",
-      judged,
-      {}};
+      kBothRigs,
+      judged};
   info.shown_as = ShownAs::correct_or_incorrect;
   return info;
 }

@@ -10,12 +10,12 @@ MetricInfo breach_velocity_mean() {
           "over the first breach: the samples from the first to the last in which the controller "
           "is in breach.",
           "own definition",
+          trial::Rig::probing,
           [](const Subject& subject) {
             return score_of_breach(subject, 1, [](std::span<const trial::ProbingSample> s) {
               return spread_of(s, speed_m_s).mean;
             });
-          },
-          trial::Rig::probing};
+          }};
 }
 
 }  // namespace tractus::metrics

@@ -9,12 +9,12 @@ MetricInfo breach_velocity_onset() {
       "m/s",
       "Speed of the actuator in the first sample of the first breach, by the controller's mode.",
       "own definition",
+      trial::Rig::probing,
       [](const Subject& subject) {
         return score_of_breach(subject, 1, [](std::span<const trial::ProbingSample> s) {
           return speed_m_s(s.front());
         });
-      },
-      trial::Rig::probing};
+      }};
 }
 
 }  // namespace tractus::metrics

@@ -10,12 +10,12 @@ MetricInfo breach_velocity_variance() {
           "over the first breach: the samples from the first to the last in which the controller "
           "is in breach.",
           "[Probing, Table 7], definition our own",
+          trial::Rig::probing,
           [](const Subject& subject) {
             return score_of_breach(subject, 2, [](std::span<const trial::ProbingSample> s) {
               return spread_of(s, speed_m_s).variance;
             });
-          },
-          trial::Rig::probing};
+          }};
 }
 
 }  // namespace tractus::metrics

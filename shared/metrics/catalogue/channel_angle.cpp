@@ -9,8 +9,8 @@ MetricInfo channel_angle() {
           "Angle between the principal axis of the voxels that lost half of themselves or more and "
           "the planned tract.",
           "own definition",
-          [](const Subject& subject) { return channel_score(subject, "angle_rad"); },
           trial::Rig::palpation,
+          [](const Subject& subject) { return channel_score(subject, "angle_rad"); },
           drills};
 }
 

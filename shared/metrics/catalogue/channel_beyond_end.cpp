@@ -19,8 +19,8 @@ MetricInfo channel_beyond_end() {
           "Depth of the deepest voxel that lost half of itself, less the planned tract's length; "
           "negative where it ends before.",
           "own definition",
-          beyond,
           trial::Rig::palpation,
+          beyond,
           drills};
 }
 

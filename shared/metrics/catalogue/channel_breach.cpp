@@ -35,8 +35,8 @@ MetricInfo channel_breach() {
           "How far the channel reaches beyond the outer face of a wall, as the image shows it "
           "before the drilling; negative where it stays within, and then to the nearest face.",
           "own definition",
-          beyond_bone,
           trial::Rig::palpation,
+          beyond_bone,
           drills};
 }
 

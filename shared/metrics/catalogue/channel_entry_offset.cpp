@@ -26,8 +26,8 @@ MetricInfo channel_entry_offset() {
           "Distance from the planned entry to where the channel's axis meets the plane across the "
           "tract there.",
           "own definition",
-          offset,
           trial::Rig::palpation,
+          offset,
           drills};
 }
 

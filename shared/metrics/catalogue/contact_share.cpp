@@ -19,6 +19,7 @@ MetricInfo contact_share() {
       "1",
       "Share of the samples in which the magnitude of the model's force is at least 0.01 N.",
       "own definition",
+      trial::Rig::palpation,
       [](const Subject& subject) -> Score {
         const auto& samples = subject.trial.samples;
         if (samples.empty()) return {{}, "no sample was recorded"};

@@ -12,6 +12,7 @@ MetricInfo depth_path() {
           "Length of the tip's way along the tract's axis, to and fro: its speed there by a "
           "Savitzky–Golay fit (21 samples at 200 Hz, order 3), integrated by the trapezoid rule.",
           "\"depth perception\" of [Oropesa2013], smoothed",
+          trial::Rig::palpation,
           [](const Subject& subject) -> Score {
             if (!subject.tract) return {{}, "the tract is not known"};
             return score_of_kinematics(

@@ -18,8 +18,8 @@ MetricInfo drilled_volume() {
           "m^3",
           "Sum over the voxels that had opacity of the share that the burr took, times a voxel.",
           "own definition",
-          removed,
           trial::Rig::palpation,
+          removed,
           drills};
 }
 

@@ -8,6 +8,7 @@ MetricInfo force_impulse() {
           "N·s",
           "Integral of the force over time at 200 Hz, by the trapezoid rule.",
           "[Trejos2014]",
+          kBothRigs,
           [](const Subject& subject) {
             return score_of_kinematics(
                 subject, [](const TipMotion& motion, const Kinematics&) -> std::optional<double> {
@@ -16,8 +17,7 @@ MetricInfo force_impulse() {
                     t_s.push_back(double(i) / kMotionRate_Hz);
                   return integral(t_s, motion.force_N);
                 });
-          },
-          std::nullopt};
+          }};
 }
 
 }  // namespace tractus::metrics

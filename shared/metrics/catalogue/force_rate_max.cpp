@@ -13,6 +13,7 @@ MetricInfo force_rate_max() {
           "Largest change of the force per time, by a Savitzky–Golay fit (21 samples at 200 Hz, "
           "order 3).",
           "[Trejos2014], filter our own",
+          kBothRigs,
           [](const Subject& subject) {
             return score_of_kinematics(
                 subject, [](const TipMotion& motion, const Kinematics&) -> std::optional<double> {
@@ -22,8 +23,7 @@ MetricInfo force_rate_max() {
                     most = std::max(most, std::abs(rate));
                   return most;
                 });
-          },
-          std::nullopt};
+          }};
 }
 
 }  // namespace tractus::metrics

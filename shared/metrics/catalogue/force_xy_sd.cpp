@@ -10,6 +10,7 @@ MetricInfo force_xy_sd() {
       "Standard deviation (n − 1) of F_xy = hypot(F_x, F_y) of the model's wrench on the probe, "
       "in the handle's frame, over the samples strictly above 0.01 N.",
       "Zoller2020, Table 1",
+      trial::Rig::palpation,
       [](const Subject& subject) {
         return wrench_score(subject, WrenchPart::force_xy, Statistic::sd);
       }};

@@ -9,6 +9,7 @@ MetricInfo force_z_sd() {
                   "Standard deviation (n − 1) of |F_z| of the model's wrench on the probe, "
                   "in the handle's frame, over the samples strictly above 0.01 N.",
                   "Zoller2020, Table 1",
+                  trial::Rig::palpation,
                   [](const Subject& subject) {
                     return wrench_score(subject, WrenchPart::force_z, Statistic::sd);
                   }};

@@ -12,14 +12,14 @@ MetricInfo missed_periods() {
           "did not "
           "take place.",
           "own definition",
+          trial::Rig::probing,
           [](const Subject& subject) -> Score {
             if (subject.trial.probing.empty()) return {{}, "no sample was recorded"};
             const auto ticks = trial::count_ticks(subject.trial.block());
             return {double(ticks.missed + ticks.bus_lost + ticks.skipped),
                     fmt::format("{} late, {} failed, {} skipped", ticks.missed, ticks.bus_lost,
                                 ticks.skipped)};
-          },
-          trial::Rig::probing};
+          }};
 }
 
 }  // namespace tractus::metrics

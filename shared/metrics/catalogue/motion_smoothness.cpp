@@ -9,14 +9,14 @@ MetricInfo motion_smoothness() {
           "Square root of half the integral of the squared jerk times duration to the fifth over "
           "path length squared: larger is less smooth.",
           "[Cotin2002]",
+          kBothRigs,
           [](const Subject& subject) {
             return score_of_kinematics(
                 subject, [](const TipMotion&, const Kinematics& k) -> std::optional<double> {
                   if (!(k.path_m > 0.0)) return std::nullopt;
                   return k.motion_smoothness();
                 });
-          },
-          std::nullopt};
+          }};
 }
 
 }  // namespace tractus::metrics

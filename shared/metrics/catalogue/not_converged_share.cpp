@@ -8,6 +8,7 @@ MetricInfo not_converged_share() {
                   "1",
                   "Share of the samples whose probe was not in equilibrium to 0.001 N.",
                   "own definition",
+                  trial::Rig::palpation,
                   [](const Subject& subject) -> Score {
                     const auto& samples = subject.trial.samples;
                     if (samples.empty()) return {{}, "no sample was recorded"};

@@ -9,6 +9,7 @@ MetricInfo operation_time() {
                   "Time from the first to the last recorded sample: the palpation, "
                   "without the answer after it.",
                   "own definition",
+                  trial::Rig::palpation,
                   [](const Subject& subject) -> Score {
                     const auto& samples = subject.trial.samples;
                     if (samples.empty()) return {{}, "no sample was recorded"};

@@ -53,6 +53,7 @@ MetricInfo path_length() {
           "Integral of the bent probe's tip speed; the tip's positions at 200 Hz are smoothed by a "
           "Savitzky–Golay fit (21 samples, order 3).",
           "own definition",
+          trial::Rig::palpation,
           length_of};
 }
 

@@ -9,12 +9,12 @@ MetricInfo probing_force_mean() {
                   "Mean push of the hand on the probe, "
                   "from the first motion that is let through to the probe stop.",
                   "[Probing, section 6.3], definition our own",
+                  trial::Rig::probing,
                   [](const Subject& subject) {
                     return score_of_motion(subject, 1, [](std::span<const trial::ProbingSample> s) {
                       return spread_of(s, push_N).mean;
                     });
-                  },
-                  trial::Rig::probing};
+                  }};
   info.followed = 2;
   return info;
 }

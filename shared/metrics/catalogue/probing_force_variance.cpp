@@ -9,12 +9,12 @@ MetricInfo probing_force_variance() {
                   "Variance (n - 1) of the push of the hand on the probe, "
                   "from the first motion that is let through to the probe stop.",
                   "[Probing, section 6.3], definition our own",
+                  trial::Rig::probing,
                   [](const Subject& subject) {
                     return score_of_motion(subject, 2, [](std::span<const trial::ProbingSample> s) {
                       return spread_of(s, push_N).variance;
                     });
-                  },
-                  trial::Rig::probing};
+                  }};
   info.followed = 4;
   return info;
 }

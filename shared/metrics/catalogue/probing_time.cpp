@@ -10,12 +10,12 @@ MetricInfo probing_time() {
           "to the "
           "probe stop, or to the end.",
           "[Probing, section 6.3], definition our own",
+          trial::Rig::probing,
           [](const Subject& subject) {
             return score_of_motion(subject, 1, [](std::span<const trial::ProbingSample> s) {
               return s.back().t_s - s.front().t_s;
             });
-          },
-          trial::Rig::probing};
+          }};
 }
 
 }  // namespace tractus::metrics

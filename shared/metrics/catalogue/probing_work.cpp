@@ -9,6 +9,7 @@ MetricInfo probing_work() {
           "J",
           "Integral of the push over the depth, by the trapezoid rule, over the motion.",
           "own definition",
+          trial::Rig::probing,
           [](const Subject& subject) {
             return score_of_motion(subject, 2, [](std::span<const trial::ProbingSample> motion) {
               std::vector<double> x_m, push;
@@ -18,8 +19,7 @@ MetricInfo probing_work() {
               }
               return integral(x_m, push);
             });
-          },
-          trial::Rig::probing};
+          }};
 }
 
 }  // namespace tractus::metrics

@@ -8,13 +8,13 @@ MetricInfo tip_speed_mean() {
           "m/s",
           "Path length over duration of the motion at 200 Hz.",
           "own definition",
+          kBothRigs,
           [](const Subject& subject) {
             return score_of_kinematics(
                 subject, [](const TipMotion&, const Kinematics& k) -> std::optional<double> {
                   return k.path_m / k.duration_s;
                 });
-          },
-          std::nullopt};
+          }};
 }
 
 }  // namespace tractus::metrics

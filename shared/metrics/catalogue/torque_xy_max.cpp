@@ -9,6 +9,7 @@ MetricInfo torque_xy_max() {
                   "Largest value of T_xy = hypot(T_x, T_y) of the model's wrench on the probe, "
                   "in the handle's frame, over the samples strictly above 0.001 N·m.",
                   "Zoller2020, Table 2",
+                  trial::Rig::palpation,
                   [](const Subject& subject) {
                     return wrench_score(subject, WrenchPart::torque_xy, Statistic::max);
                   }};

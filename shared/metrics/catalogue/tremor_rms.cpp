@@ -11,6 +11,7 @@ MetricInfo tremor_rms() {
           "Root mean square of the tip's position between 8 and 12 Hz, over all axes: Welch's "
           "density (Hann, 256 samples at 200 Hz).",
           "[Novak2017] for the band",
+          kBothRigs,
           [](const Subject& subject) {
             return score_of_kinematics(
                 subject, [](const TipMotion& motion, const Kinematics&) -> std::optional<double> {
@@ -24,8 +25,7 @@ MetricInfo tremor_rms() {
                   }
                   return std::sqrt(power);
                 });
-          },
-          std::nullopt};
+          }};
 }
 
 }  // namespace tractus::metrics

@@ -9,6 +9,7 @@ MetricInfo wall_coverage() {
                   "Share of the side walls, unrolled into 10 depths × 12 angles, "
                   "in which the force across the tract's axis reached 0.01 N.",
                   "own definition",
+                  trial::Rig::palpation,
                   [](const Subject& subject) { return coverage_score(subject, std::nullopt); }};
   info.shown_as = ShownAs::share;
   info.followed = 8;

@@ -12,6 +12,7 @@ MetricInfo wall_coverage_entropy() {
       "Entropy of the contacts over the wall's bins, over that of an even spread: 1 is even, 0 "
       "is one bin.",
       "own definition",
+      trial::Rig::palpation,
       [](const Subject& subject) -> Score {
         if (!subject.tract) return {{}, "the tract is not known"};
         const auto& bins = coverage(subject);

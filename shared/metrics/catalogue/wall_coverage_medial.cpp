@@ -10,6 +10,7 @@ MetricInfo wall_coverage_medial() {
       "Share of the medial wall (a quarter turn, 10 depths × 3 angles) "
       "in which the force across the tract's axis reached 0.01 N.",
       "own definition",
+      trial::Rig::palpation,
       [](const Subject& subject) { return coverage_score(subject, volume::Wall::medial); }};
   info.shown_as = ShownAs::share;
   return info;
