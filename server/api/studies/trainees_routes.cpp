@@ -89,11 +89,8 @@ std::vector<NamedSchema> one_schemas() {
                                      "Number of the trial at which competence was signalled, "
                                      "counted from 1; null if it was not signalled"))});
   fields.push_back({"relapses", array(ref("Relapse"), "Relapses, in order of time")});
-  fields.push_back(
-      {"scenarios", array(anything("Share of correct answers on one scenario, with its interval"),
-                          "Results by scenario")});
-  fields.push_back(
-      {"scores", array(anything("Learning curve of one score"), "Learning curves by score")});
+  fields.push_back({"scenarios", array(ref("ScenarioResult"), "Results by scenario")});
+  fields.push_back({"scores", array(ref("ScoreCurve"), "Learning curves by score")});
   fields.push_back({"attempts", array(ref("Attempt"), "Trials of the trainee, in order of time")});
   fields.push_back(
       {"calibration",
@@ -121,8 +118,35 @@ std::vector<NamedSchema> one_schemas() {
                {"relapse_sum",
                 nullable(
                     number("1", "CUSUM sum after the trial; null before competence is signalled"))},
-               {"scores", anything("Scores of the trial by metric id; a value is null if the trial "
-                                   "has no such score")}})},
+               {"scores", map(nullable(number("unit of the metric",
+                                              "Score of the trial; null if "
+                                              "the trial has no such score")),
+                              "Scores of the trial by metric id")}})},
+      {"ScenarioResult",
+       object({{"scenario", text("Title of the case or scenario")},
+               {"trials", integer("1", "Trials of the trainee on this scenario")},
+               {"right", integer("1", "Trials with a correct answer")},
+               {"share", optional(number("1", "Share of correct answers; absent without a trial"))},
+               {"wilson_low", optional(number("1", "Lower end of the share's 95 % interval"))},
+               {"wilson_high", optional(number("1", "Upper end of the share's 95 % interval"))},
+               {"verdict", text("What the interval says against the acceptable and unacceptable "
+                                "rates of failure")},
+               {"last_trial",
+                optional(integer("1", "Number of the last trial on this scenario, from 1"))},
+               {"may_fail", number("1",
+                                   "Failure rate that is exceeded with a probability of 10 %, "
+                                   "0 to 1")}})},
+      {"ScoreCurve",
+       object({{"score", text("Metric id")},
+               {"trials", integer("1", "Trials that have this score")},
+               {"first", optional(number("1",
+                                         "Fitted score of the first trial, as a share of the "
+                                         "scenario's mean over the cohort: a in a n^-b"))},
+               {"rate", optional(number("1", "Learning rate: b in a n^-b"))},
+               {"rate_p", optional(nullable(number("1", "p-value of a rate of 0")))},
+               {"share_left_when_trials_double",
+                optional(number("1", "Score after twice the trials, as a share: 2^-b"))},
+               {"note", optional(text("Why no curve could be fitted"))}})},
       {"CalibrationBin",
        object(
            {{"low", number("1", "Smallest confidence of the bin, 0 to 1")},

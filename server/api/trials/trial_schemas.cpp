@@ -60,8 +60,7 @@ core::Json trial_schema() {
       {"scenario", nullable(ref("ProbingScenario"))},
       {"study", nullable(ref("StudyPlace"))},
       {"coverage", nullable(ref("Coverage"))},
-      {"probe", anything("Probe of the model that ran: length_m, radius_m, points, "
-                         "point_spacing_m, pose_offset_m")}};
+      {"probe", ref("TrialProbe")}};
   fields.insert(fields.end(), more.begin(), more.end());
   return object(fields);
 }
@@ -149,6 +148,18 @@ std::vector<NamedSchema> trial_schemas() {
                             {"total", integer("1", "Number of trials that the search matches")},
                             {"more", truth("True if trials follow those of the answer")}})},
       {"Trial", trial_schema()},
+      {"TrialProbe",
+       object(
+           {{"length_m", optional(number("m", "Palpation: length of the free shank"))},
+            {"radius_m", optional(number("m", "Palpation: radius of the shank"))},
+            {"points", optional(integer("1", "Palpation: points of contact on the shank"))},
+            {"point_spacing_m",
+             optional(number("m", "Palpation: distance between two points of contact"))},
+            {"pose_offset_m",
+             optional(point("Palpation: added to the recorded position, in the volume's frame"))},
+            {"travel_m", optional(number("m",
+                                         "Probing: travel of the linear drive; absent in "
+                                         "blind trials"))}})},
       {"TrialEvent",
        object({{"t_s", number("s", "Time of the event, in seconds since the start of the trial")},
                {"kind",
