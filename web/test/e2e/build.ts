@@ -1,4 +1,4 @@
-/** Before the tests: against TRACTUS_URL, or else the pages built anew and served with the fixture. */
+/** Before the tests: against TRACTUS_URL, or else the pages, built anew unless PAGES_ARE_BUILT, served with the fixture. */
 import type { TestProject } from 'vitest/node';
 import { execFileSync } from 'node:child_process';
 import { fileURLToPath } from 'node:url';
@@ -28,11 +28,12 @@ export default async function setup(project: TestProject) {
     return;
   }
   // In a process of its own: within the test runner the libraries would be built for testing, and slow.
-  execFileSync('npm', ['run', '--silent', 'build', '--', '--logLevel', 'warn'], {
-    cwd: kRoot,
-    stdio: 'inherit',
-    env: { ...process.env, NODE_ENV: 'production', VITEST: '' },
-  });
+  if (!process.env.PAGES_ARE_BUILT)
+    execFileSync('npm', ['run', '--silent', 'build', '--', '--logLevel', 'warn'], {
+      cwd: kRoot,
+      stdio: 'inherit',
+      env: { ...process.env, NODE_ENV: 'production', VITEST: '' },
+    });
   const { url: served, server } = await serveFixture(`${kRoot}/dist`);
   project.provide('url', served);
   project.provide('account', kAccount);
