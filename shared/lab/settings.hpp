@@ -213,6 +213,8 @@ struct PalpationPriorSettings {
   double length_sd_m = 5e-4;
   /// A factor is sought within this factor of its start. Prior.
   double most_factor = 20.0;
+  /// As of the probing rig. Prior.
+  double most_delay_s = 2.5e-3;
   /// Step of finite differences in a logarithm; where a step takes a sample's shank from one
   /// equilibrium to another, the derivative is the jump over the step: so not too small. Tuned.
   double logarithmic_step = 2e-2;

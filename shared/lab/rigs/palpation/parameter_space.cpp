@@ -38,6 +38,15 @@ Parameter length(double start, double low, double high) {
   return p;
 }
 
+/// The catalogue's effect that delays the force.
+std::string delaying_effect() {
+  const auto& all = effects::palpation_effects();
+  const auto found =
+      std::ranges::find_if(all, [](const auto& info) { return info.facts.is_delay; });
+  core::require(found != all.end(), "an effect of the catalogue delays the force");
+  return found->facts.id;
+}
+
 }  // namespace
 
 const effects::EffectFacts& PalpationParameterSpace::facts_of(std::string_view id) const {
@@ -48,20 +57,17 @@ const effects::EffectFacts& PalpationParameterSpace::facts_of(std::string_view i
 }
 
 PalpationParameterSpace::PalpationParameterSpace(models::PalpationModel model, double field_per_m,
-                                                 UserEffects user_effects)
-    : model_(std::move(model)), user_effects_(std::move(user_effects)), field_per_m_(field_per_m) {
+                                                 double spacing_s, UserEffects user_effects)
+    : model_(std::move(model)),
+      user_effects_(std::move(user_effects)),
+      field_per_m_(field_per_m),
+      spacing_s_(spacing_s) {
   for (const effects::EffectInstance& use : model_.effects) {
     auto facts = effects::palpation_facts(use);
     core::require(bool(facts), "a model's effects are known");
     own_.push_back(std::move(*facts));
   }
   const PalpationParameters& p = model_.base;
-  const auto add = [this](const char* name, double PalpationParameters::*held,
-                          Parameter parameter) {
-    parameter.pointer = fmt::format("/base/{}", name);
-    if (fixed(parameter.pointer) || replaced(held) || !(parameter.start > 0.0)) return;
-    slots_.push_back({name, held, std::move(parameter)});
-  };
   add("force_factor_Nm", &PalpationParameters::force_factor_Nm,
       factor(p.force_factor_Nm, kPalpationPrior.factor_sd));
   add("force_scale", &PalpationParameters::force_scale,
@@ -78,6 +84,30 @@ PalpationParameterSpace::PalpationParameterSpace(models::PalpationModel model, d
       length(p.length_m, std::max(0.8 * p.length_m, 1.01 * (p.points - 1) * p.point_spacing_m),
              1.2 * p.length_m));
   add("radius_m", &PalpationParameters::radius_m, factor(p.radius_m, kPalpationPrior.radius_sd));
+  add_delay();
+}
+
+void PalpationParameterSpace::add(const char* name, double PalpationParameters::*held,
+                                  Parameter parameter) {
+  parameter.pointer = fmt::format("/base/{}", name);
+  if (fixed(parameter.pointer) || replaced(held) || !(parameter.start > 0.0)) return;
+  slots_.push_back({held, std::move(parameter)});
+}
+
+void PalpationParameterSpace::add_delay() {
+  Parameter delay{};
+  delay.pointer = "/sensor/force_delay_s";
+  if (fixed(delay.pointer) || std::ranges::any_of(own_, &effects::EffectFacts::is_delay)) return;
+  delay.high = std::max(kPalpationPrior.most_delay_s, spacing_s_);
+  delay.low = -delay.high;
+  delay.step = 0.1 * delay.high;
+  delay.prior_sd = 0.5 * delay.high;
+  slots_.push_back({nullptr, std::move(delay)});
+}
+
+bool PalpationParameterSpace::delays(const Structure& structure) const {
+  return std::ranges::any_of(structure.effects,
+                             [&](const std::string& id) { return facts_of(id).is_delay; });
 }
 
 bool PalpationParameterSpace::fixed(const std::string& pointer) const {
@@ -115,7 +145,9 @@ std::vector<Parameter> PalpationParameterSpace::of_effect(const effects::EffectF
 
 std::vector<Parameter> PalpationParameterSpace::parameters(const Structure& structure) const {
   std::vector<Parameter> out;
-  for (const Slot& slot : slots_) out.push_back(slot.parameter);
+  const bool own_delay = delays(structure);
+  for (const Slot& slot : slots_)
+    if (slot.held || !own_delay) out.push_back(slot.parameter);
   for (std::size_t e = 0; e < own_.size(); ++e) {
     auto own = of_effect(own_[e]);
     for (std::size_t k = 0; k < own.size(); ++k) {
@@ -139,7 +171,12 @@ models::PalpationModel PalpationParameterSpace::with(const Structure& structure,
                                                      std::span<const double> values) const {
   models::PalpationModel out = model_;
   std::size_t at = 0;
-  for (const Slot& slot : slots_) out.base.*slot.held = values[at++];
+  const bool own_delay = delays(structure);
+  for (const Slot& slot : slots_)
+    if (slot.held)
+      out.base.*slot.held = values[at++];
+    else if (!own_delay)
+      ++at;  // of the recording, not of the model
   for (std::size_t e = 0; e < own_.size(); ++e)
     if (!own_[e].free_per_trial)
       for (double& value : out.effects[e].values) value = values[at++];
@@ -152,6 +189,15 @@ models::PalpationModel PalpationParameterSpace::with(const Structure& structure,
     out.effects.push_back(std::move(use));
   }
   core::require(at == values.size(), "a structure has as many values as parameters");
+  return out;
+}
+
+models::PalpationModel PalpationParameterSpace::recorded(const Structure& structure,
+                                                         std::span<const double> values) const {
+  models::PalpationModel out = with(structure, values);
+  if (delays(structure)) return out;
+  for (std::size_t k = 0; k < slots_.size(); ++k)
+    if (!slots_[k].held) out.effects.push_back({delaying_effect(), {values[k]}});
   return out;
 }
 

@@ -38,7 +38,7 @@ class PalpationProblem final : public Problem {
   PalpationProblem(volume::ForceField field, models::PalpationModel model, UserEffects user_effects,
                    std::vector<PalpationRecording> trials, std::optional<trial::StatedTract> tract)
       : field_(std::move(field)),
-        numbers_(std::move(model), 500.0, std::move(user_effects)),
+        numbers_(std::move(model), 500.0, spacing_of(trials), std::move(user_effects)),
         trials_(std::move(trials)),
         trends_(trials_.size()),
         rests_(trials_.size()),
@@ -108,7 +108,8 @@ class PalpationProblem final : public Problem {
     if (!touches_) return;
     const auto middle = field.begin() + std::ptrdiff_t(field.size() / 2);
     std::ranges::nth_element(field, middle);
-    numbers_ = PalpationParameterSpace(numbers_.model(), *middle, numbers_.user_effects());
+    numbers_ = PalpationParameterSpace(numbers_.model(), *middle, spacing_of(trials_),
+                                       numbers_.user_effects());
   }
   bool touches() const { return touches_; }
 
@@ -116,6 +117,11 @@ class PalpationProblem final : public Problem {
   bool has_drift(const Structure& structure) const { return !numbers_.drift(structure).empty(); }
   const PalpationRecording& trial(int k) const { return trials_[std::size_t(k)]; }
   static Trend trend_of(const PalpationRecording& r);
+  static double spacing_of(const std::vector<PalpationRecording>& trials) {
+    double most_s = 0.0;
+    for (const auto& r : trials) most_s = std::max(most_s, r.spacing_s);
+    return most_s;
+  }
   void normalise();
   void set_candidates();
   void set_instants();
@@ -123,7 +129,7 @@ class PalpationProblem final : public Problem {
 
   models::PalpationRuntime runtime_of(const Structure& structure,
                                       std::span<const double> values) const {
-    auto runtime = models::PalpationRuntime::make(numbers_.with(structure, values), field_);
+    auto runtime = models::PalpationRuntime::make(numbers_.recorded(structure, values), field_);
     core::require(bool(runtime), "values within their bounds make a model that runs");
     return std::move(*runtime);
   }

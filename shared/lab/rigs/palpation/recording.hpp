@@ -25,6 +25,7 @@ inline Vec6 stacked(const math::Wrench& wrench) {
 struct PalpationRecording {
   static constexpr double kDead = 1e6;
   std::string id, note;
+  double spacing_s = 0.0;              ///< between two samples as recorded
   models::PalpationMotion motion;      ///< smoothed; every so many-th sample of a fast recording
   std::vector<math::Vec3> p_sd_m;      ///< standard error of the smoothed position, V
   std::vector<double> turn_sd_rad;     ///< of the smoothed orientation, about any axis
