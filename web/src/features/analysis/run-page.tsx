@@ -50,22 +50,20 @@ export function RunPage({ id }: { readonly id: string }) {
             ) : null}
           </p>
         </div>
-        {run.state === 'done' ? (
-          <span className={styles.buttons}>
-            <a href={analysisFile(id, 'report.html')} target="_blank" rel="noreferrer">
-              Report (new tab)
-            </a>
-            <a href={analysisFile(id, 'data.csv')} download>
-              Data (CSV)
-            </a>
-            <a href={analysisFile(id, 'dictionary.json')} download>
-              Data dictionary
-            </a>
-            <a href={analysisFile(id, 'result.json')} download>
-              All results (JSON)
-            </a>
-          </span>
-        ) : null}
+        <span className={styles.buttons} data-waiting={run.state !== 'done' || undefined}>
+          <a href={analysisFile(id, 'report.html')} target="_blank" rel="noreferrer">
+            Report (new tab)
+          </a>
+          <a href={analysisFile(id, 'data.csv')} download>
+            Data (CSV)
+          </a>
+          <a href={analysisFile(id, 'dictionary.json')} download>
+            Data dictionary
+          </a>
+          <a href={analysisFile(id, 'result.json')} download>
+            All results (JSON)
+          </a>
+        </span>
       </div>
       {run.state === 'failed' ? (
         <Notice tone="bad" title="The analysis failed.">
@@ -73,9 +71,12 @@ export function RunPage({ id }: { readonly id: string }) {
         </Notice>
       ) : null}
       {run.state === 'queued' || run.state === 'running' ? (
-        <Card title="Running">
-          <Progress done={run.share} of={1} label="Progress" />
-        </Card>
+        <>
+          <Card title="Running">
+            <Progress done={run.share} of={1} label="Progress" />
+          </Card>
+          <Skeleton height="640px" />
+        </>
       ) : null}
       {run.result ? <ResultView result={run.result} /> : null}
     </div>
