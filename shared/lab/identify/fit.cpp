@@ -249,8 +249,14 @@ Eigen::VectorXd held_out_losses(const Residual& residual, const Solution& at, do
     for (std::size_t k = 0; k < at.values.size(); ++k)
       step(Eigen::Index(k)) =
           coordinate(at.parameters[k], values[k]) - coordinate(at.parameters[k], at.values[k]);
+    const Eigen::Index begin = residual.offset(fold.trial),
+                       all = residual.offset(fold.trial + 1) - begin;
+    Eigen::VectorXd trial =
+        at.residual.segment(begin, all) + at.jacobian.middleRows(begin, all) * step;
+    residual.problem().leave_stretches_out(at.structure, fold.trial, kValidation.stretches_of_trial,
+                                           trial);
     const auto here = at.residual.segment(fold.first, fold.count);
-    const Eigen::VectorXd there = here + at.jacobian.middleRows(fold.first, fold.count) * step;
+    const Eigen::VectorXd there = trial.segment(fold.first - begin, fold.count);
     // Exactly 0 is that of which the structure says nothing (dry friction at rest).
     const auto judged = (here.array() != 0.0).eval();
     out(f) = robust_loss(judged.select(there, 0.0), scale) / std::max(1.0, double(judged.count()));

@@ -16,7 +16,8 @@ Fit report(const Residual& residual, Solution& solution, bool held_out);
 double held_out_rmse(const Residual& residual, const Solution& solution);
 
 /// Of each fold (trial, or stretch of one) what a fit of the others leaves there: the mean of Huber's loss at `scale` over what
-/// the structure judges, by the jacobian that the solution has. What is free in each trial is fitted to the fold itself.
+/// the structure judges, by the jacobian that the solution has. What is free in each trial is fitted to the trial's other
+/// stretches.
 Eigen::VectorXd held_out_losses(const Residual& residual, const Solution& solution, double scale);
 
 }  // namespace tractus::lab

@@ -47,6 +47,10 @@ class ResidualModel {
                               Eigen::Ref<Eigen::MatrixXd> out) const;
   /// Are those so cheap that a search should differentiate anew at every step?
   virtual bool differs_cheaply() const { return false; }
+  /// What `residuals` would leave of each of `stretches` stretches of a trial if what is free per trial were fitted to the
+  /// other stretches. Nothing changes where nothing is free.
+  virtual void leave_stretches_out(const Structure& /*structure*/, int /*trial*/, int /*stretches*/,
+                                   Eigen::Ref<Eigen::VectorXd> /*residual*/) const {}
   /// How many numbers per trial `residuals` has eliminated by itself for that structure.
   virtual int free_per_trial(const Structure& structure) const = 0;
 

@@ -4,6 +4,8 @@
 #include <Eigen/Core>
 #include <span>
 
+#include "lab/signal/left_out.hpp"
+
 namespace tractus::lab {
 
 /// Legendre polynomials over a trial, orthonormal under the weights of its residuals.
@@ -19,6 +21,10 @@ class Drift {
   Eigen::VectorXd fit(const Eigen::Ref<const Eigen::VectorXd>& residual) const;
   /// Takes the trend out.
   void remove(Eigen::Ref<Eigen::VectorXd> residual) const;
+  /// Of a residual without its trend: each stretch without the trend of the others (signal/left_out.hpp).
+  void leave_stretches_out(int stretches, Eigen::Ref<Eigen::VectorXd> residual) const {
+    lab::leave_stretches_out(basis_, stretches, 1, residual);
+  }
   /// The trend at any times, in the unit of the unweighted residual.
   Eigen::VectorXd at(std::span<const double> t_s, const Eigen::VectorXd& coefficients) const;
   /// Variance of the difference of the fitted trend at two times, when the weighted residuals are

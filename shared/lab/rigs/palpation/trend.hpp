@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "lab/rigs/palpation/recording.hpp"
+#include "lab/signal/left_out.hpp"
 
 namespace tractus::lab {
 
@@ -23,6 +24,10 @@ class Trend {
   /// Takes out of a whitened residual (six numbers per output) what is trend, and scales the rest
   /// so that noise keeps its variance.
   void remove(Eigen::Ref<Eigen::VectorXd> residual) const;
+  /// Of a residual without its trend: each stretch without the trend of the others (signal/left_out.hpp).
+  void leave_stretches_out(int stretches, Eigen::Ref<Eigen::VectorXd> residual) const {
+    if (basis_.rows() == residual.size()) lab::leave_stretches_out(basis_, stretches, 6, residual);
+  }
   /// The trend in a whitened residual at any times, [channel][time], N and N·m.
   Eigen::MatrixXd at(std::span<const double> t_s, const Eigen::VectorXd& residual) const;
   /// Variance of the difference of a channel's trend at two times, (N or N·m)², when the whitened

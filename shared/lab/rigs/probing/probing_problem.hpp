@@ -54,6 +54,10 @@ class ProbingProblem final : public Problem, public FormulaTerms {
     drifts_[std::size_t(k)].remove(out);
     out = (before.array() == 0.0).select(0.0, out);
   }
+  void leave_stretches_out(const Structure& structure, int k, int stretches,
+                           Eigen::Ref<Eigen::VectorXd> residual) const override {
+    if (has_drift(structure)) drifts_[std::size_t(k)].leave_stretches_out(stretches, residual);
+  }
   int free_per_trial(const Structure& structure) const override {
     return has_drift(structure) ? Drift::kOrders : 0;
   }
