@@ -34,6 +34,8 @@ class RecordedTrials {
   /// What was compared; the first is the primary.
   virtual const std::vector<Channel>& channels() const = 0;
   virtual States states(int trial) const = 0;
+  /// What may predict an error: the states and, where errors are vectors, vectors in the errors' frame.
+  virtual States predictors(int trial) const { return states(trial); }
   /// Remarks on the recording itself that belong into every answer: "tz_Nm was not recorded: …".
   virtual const std::vector<std::string>& notes() const = 0;
 };

@@ -5,6 +5,8 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <optional>
 
 #include "lab/identify/parallel.hpp"
 #include "lab/settings.hpp"
@@ -101,10 +103,10 @@ Set set_of(const Residual& residual, const Solution& at) {
   std::vector<std::vector<Blocks>> folds(std::size_t(problem.trials()));
   Set out;
   out.names =
-      with_memory(problem.states(0), problem.full_rate(at.structure, at.values, 0).t_s).names;
+      with_memory(problem.predictors(0), problem.full_rate(at.structure, at.values, 0).t_s).names;
   parallel(problem.trials(), residual.threads(), [&](int k) {
     const Residuals r = problem.full_rate(at.structure, at.values, k);
-    const States states = with_memory(problem.states(k), r.t_s);
+    const States states = with_memory(problem.predictors(k), r.t_s);
     const std::size_t n = r.t_s.size(), length = 1 + n / kDependence.blocks_per_trial;
     for (int p = 0; p < pieces; ++p)
       folds[std::size_t(k)].push_back(
@@ -167,78 +169,113 @@ class Hats {
   std::vector<double> knots_a_, knots_b_;
 };
 
-struct Prediction {
-  double predictable = 0.0, trials_better = 0.0;
-};
+using Row = std::vector<std::pair<Eigen::Index, double>>;
 
-/// What a sum of such functions takes away in folds that it was not fitted to.
-Prediction prediction(const Set& set, const std::vector<Hats>& all) {
-  Eigen::Index size = 0;
-  for (const Hats& hats : all) size += hats.size();
-  const std::size_t components = set.folds.front().errors.size(), n = set.folds.size();
-  const auto row_of = [&](const Blocks& fold, std::size_t block) {
-    std::vector<std::pair<Eigen::Index, double>> row;
-    Eigen::Index first = 0;
-    for (const Hats& hats : all) {
-      hats.at(fold, block, [&](Eigen::Index c, double v) { row.emplace_back(first + c, v); });
-      first += hats.size();
-    }
-    return row;
-  };
-  std::vector<Eigen::MatrixXd> a(n), b(n);
-  for (std::size_t f = 0; f < n; ++f) {
-    const Blocks& fold = set.folds[f];
-    Eigen::MatrixXd& am = a[f] = Eigen::MatrixXd::Zero(size, size);
-    Eigen::MatrixXd& bm = b[f] = Eigen::MatrixXd::Zero(size, Eigen::Index(components));
-    for (std::size_t k = 0; k < fold.count.size(); ++k) {
-      const auto row = row_of(fold, k);
-      for (const auto& [i, u] : row) {
-        for (const auto& [j, w] : row) am(i, j) += u * w;
-        for (std::size_t c = 0; c < components; ++c)
-          bm(i, Eigen::Index(c)) += u * fold.errors[c][k];
-      }
-    }
+/// The functions' values at a block, those that differ from 0.
+Row row_of(const std::vector<Hats>& all, const Blocks& fold, std::size_t block) {
+  Row row;
+  Eigen::Index first = 0;
+  for (const Hats& hats : all) {
+    hats.at(fold, block, [&](Eigen::Index c, double v) { row.emplace_back(first + c, v); });
+    first += hats.size();
   }
-  Eigen::MatrixXd whole = kDependence.ridge * Eigen::MatrixXd::Identity(size, size);
-  Eigen::MatrixXd right = Eigen::MatrixXd::Zero(size, Eigen::Index(components));
-  for (std::size_t f = 0; f < n; ++f) whole += a[f], right += b[f];
-  std::vector<double> taken(n, 0.0);
-  for (std::size_t f = 0; f < n; ++f) {
-    const Blocks& fold = set.folds[f];
-    const Eigen::MatrixXd x = (whole - a[f]).llt().solve(right - b[f]);
-    for (std::size_t k = 0; k < fold.count.size(); ++k) {
-      const auto row = row_of(fold, k);
-      for (std::size_t c = 0; c < components; ++c) {
-        double value = 0.0;
-        for (const auto& [i, u] : row) value += u * x(i, Eigen::Index(c));
-        const double e = fold.errors[c][k];
-        taken[f] += fold.count[k] * (e * e - (e - value) * (e - value));
-      }
-    }
-  }
-  double sum = 0.0, squares = 0.0, better = 0.0;
-  for (std::size_t f = 0; f < n; ++f)
-    sum += taken[f], squares += set.folds[f].squares, better += taken[f] > 0.0;
-  return {squares > 0.0 ? std::clamp(sum / squares, 0.0, 1.0) : 0.0, better / double(n)};
+  return row;
 }
 
-/// Forward selection of the functions that take away most.
-Prediction best_sum(const Set& set, const std::vector<Hats>& all, int threads) {
-  std::vector<Hats> sum;
-  Prediction best;
-  while (sum.size() < kDependence.most_functions) {
-    std::vector<Prediction> with(all.size());
-    parallel(int(all.size()), threads, [&](int k) {
-      std::vector<Hats> now = sum;
-      now.push_back(all[std::size_t(k)]);
-      with[std::size_t(k)] = prediction(set, now);
-    });
-    const auto most = std::ranges::max_element(with, {}, &Prediction::predictable);
-    if (most == with.end() || most->predictable < best.predictable + kDependence.least_more) break;
-    best = *most;
-    sum.push_back(all[std::size_t(most - with.begin())]);
+/// A sum of functions and its normal equations, fold by fold.
+class Sum {
+ public:
+  Sum(const Set& set, std::vector<Hats> all) : set_(set), all_(std::move(all)) {
+    Eigen::Index size = 0;
+    for (const Hats& hats : all_) size += hats.size();
+    const auto components = Eigen::Index(set.folds.front().errors.size());
+    for (const Blocks& fold : set.folds) {
+      Eigen::MatrixXd& a = a_.emplace_back(Eigen::MatrixXd::Zero(size, size));
+      Eigen::MatrixXd& b = b_.emplace_back(Eigen::MatrixXd::Zero(size, components));
+      for (std::size_t k = 0; k < fold.count.size(); ++k) {
+        const Row row = row_of(all_, fold, k);
+        for (const auto& [i, u] : row) {
+          for (const auto& [j, w] : row) a(i, j) += u * w;
+          for (Eigen::Index c = 0; c < components; ++c)
+            b(i, c) += u * fold.errors[std::size_t(c)][k];
+        }
+      }
+    }
+  }
+
+  const std::vector<Hats>& functions() const { return all_; }
+  /// By how much the squares of a fold fall if the sum is fitted to the folds of `to`, but for that one.
+  double taken(std::size_t fold, const std::vector<std::size_t>& to) const {
+    const Eigen::Index size = a_.front().rows();
+    Eigen::MatrixXd a = kDependence.ridge * Eigen::MatrixXd::Identity(size, size);
+    Eigen::MatrixXd b = Eigen::MatrixXd::Zero(size, b_.front().cols());
+    for (const std::size_t f : to)
+      if (f != fold) a += a_[f], b += b_[f];
+    const Eigen::MatrixXd x = a.llt().solve(b);
+    const Blocks& of = set_.folds[fold];
+    double sum = 0.0;
+    for (std::size_t k = 0; k < of.count.size(); ++k) {
+      const Row row = row_of(all_, of, k);
+      for (Eigen::Index c = 0; c < x.cols(); ++c) {
+        double value = 0.0;
+        for (const auto& [i, u] : row) value += u * x(i, c);
+        const double e = of.errors[std::size_t(c)][k];
+        sum += of.count[k] * (e * e - (e - value) * (e - value));
+      }
+    }
+    return sum;
+  }
+  /// Share of the squares of some folds that it takes away, each fitted to the others of them.
+  double share(const std::vector<std::size_t>& of) const {
+    double sum = 0.0, squares = 0.0;
+    for (const std::size_t f : of) sum += taken(f, of), squares += set_.folds[f].squares;
+    return squares > 0.0 ? std::clamp(sum / squares, 0.0, 1.0) : 0.0;
+  }
+
+ private:
+  const Set& set_;
+  std::vector<Hats> all_;
+  std::vector<Eigen::MatrixXd> a_, b_;  // by fold
+};
+
+/// Forward selection, on some folds alone, of the functions that take away most of their squares. Empty if none does.
+std::optional<Sum> best_sum(const Set& set, const std::vector<Hats>& all,
+                            const std::vector<std::size_t>& of, int threads) {
+  std::optional<Sum> best;
+  double taken = 0.0;
+  for (std::size_t size = 0; size < kDependence.most_functions; ++size) {
+    std::vector<double> with(all.size());
+    const auto larger = [&](std::size_t k) {
+      std::vector<Hats> sum = best ? best->functions() : std::vector<Hats>{};
+      sum.push_back(all[k]);
+      return Sum(set, std::move(sum));
+    };
+    parallel(int(all.size()), threads,
+             [&](int k) { with[std::size_t(k)] = larger(std::size_t(k)).share(of); });
+    const auto most = std::ranges::max_element(with);
+    if (most == with.end() || *most < taken + kDependence.least_more) break;
+    taken = *most;
+    best.emplace(larger(std::size_t(most - with.begin())));
   }
   return best;
+}
+
+/// What functions take away that were chosen and fitted without the folds that they are judged by.
+void judge(const Set& set, const std::vector<Hats>& all, int threads, ResidualDependence& out) {
+  const std::size_t n = set.folds.size(), groups = std::min(n, kDependence.groups);
+  double sum = 0.0, squares = 0.0, better = 0.0;
+  for (std::size_t g = 0; g < groups; ++g) {
+    std::vector<std::size_t> others;
+    for (std::size_t f = 0; f < n; ++f)
+      if (f % groups != g) others.push_back(f);
+    const auto best = best_sum(set, all, others, threads);
+    for (std::size_t f = g; f < n; f += groups) {
+      const double taken = best ? best->taken(f, others) : 0.0;
+      sum += taken, squares += set.folds[f].squares, better += taken > 0.0;
+    }
+  }
+  out.predictable = squares > 0.0 ? std::clamp(sum / squares, 0.0, 1.0) : 0.0;
+  out.trials_better = better / double(n);
 }
 
 /// "velocity_m_s" → "velocity".
@@ -259,18 +296,19 @@ ResidualDependence residual_dependence(const Residual& residual, const Solution&
   ResidualDependence out;
   std::vector<std::pair<double, std::size_t>> alone;
   std::vector<Hats> all;
+  std::vector<std::size_t> every(set.folds.size());
+  std::iota(every.begin(), every.end(), std::size_t{0});
   for (std::size_t s = 0; s < set.names.size(); ++s) {
     const Hats hats(set, s);
     if (!hats.any()) continue;
-    alone.emplace_back(prediction(set, {hats}).predictable, s);
+    alone.emplace_back(Sum(set, {hats}).share(every), s);
     all.push_back(hats);
   }
   std::ranges::stable_sort(alone, std::greater<>(), &std::pair<double, std::size_t>::first);
   for (std::size_t i = 0; i < std::min(kDependence.paired, alone.size()); ++i)
     for (std::size_t j = 0; j < i; ++j)
       if (const Hats hats(set, alone[j].second, alone[i].second); hats.any()) all.push_back(hats);
-  const Prediction joint = best_sum(set, all, residual.threads());
-  out.predictable = joint.predictable, out.trials_better = joint.trials_better;
+  judge(set, all, residual.threads(), out);
   for (std::size_t k = 0; k < std::min(kDependence.named, alone.size()); ++k) {
     const auto& [share, signal] = alone[k];
     if (share < kDependence.worth_naming) break;
