@@ -159,6 +159,8 @@ struct PalpationFitSettings {
   std::size_t most_instants = 4000;
   /// And no more than so many a second of a trial. Bound.
   double instants_Hz = 100.0;
+  /// Samples from which noise is estimated anew. Bound.
+  std::size_t least_for_noise = 100;
 };
 
 /// How the motion's errors weigh on a palpation's samples, and which equilibrium the shank was in.
@@ -213,7 +215,7 @@ struct PalpationPriorSettings {
   double length_sd_m = 5e-4;
   /// A factor is sought within this factor of its start. Prior.
   double most_factor = 20.0;
-  /// As of the probing rig. Prior.
+  /// The force may be late or early by this without an effect being missing. Prior.
   double most_delay_s = 2.5e-3;
   /// Step of finite differences in a logarithm; where a step takes a sample's shank from one
   /// equilibrium to another, the derivative is the jump over the step: so not too small. Tuned.
@@ -302,9 +304,6 @@ struct SelectionSettings {
   double no_worse = 1.1;
   /// The price of a number. Tuned.
   double price_nats = 5.0;
-  /// An effect that refines its parent's law needs to bring only this share of what the given model
-  /// left over the floor. Tuned.
-  double least_gain_over_parent = 2e-4;
   /// A mean square below this says nothing more: the noise is known no better. Tuned.
   double least_mean_square = 0.02;
 };
@@ -315,14 +314,11 @@ struct PosteriorSettings {
   double as_good = 1.5;
   /// The probability at which no further experiment is recommended. Tuned.
   double settled = 0.95;
-  /// Independent observations that a trial is worth when structures are compared: far below the number of samples, for
-  /// what separates structures is small flaws of any model, which all samples of a trial share. Tuned.
-  double observations_per_trial = 12.0;
   /// Probability that is spread over all structures alike, for what the comparison does not foresee: the share of wrong
   /// names on the development sets. Tuned.
   double unforeseen = 0.02;
-  /// Structures that lead for which it is asked whether they lower the unweighted error. Bound.
-  int contenders = 8;
+  /// From this probability on it is asked whether a structure lowers the unweighted error. Bound.
+  double least_asked = 0.002;
   /// Bayesian bootstraps over the trials. Bound.
   int bootstraps = 400;
 };
@@ -333,6 +329,8 @@ struct ValidationSettings {
   int fewest_trials = 4;
   /// So many over all trials. Tuned.
   int stretches = 8;
+  /// What is free per trial is fitted without each of so many stretches of it. Numeric.
+  int stretches_of_trial = 24;
   /// Numbers with a greater correlation are reported as known only together. Tuned.
   double known_together = 0.98;
   /// A direction that one fold alone informs to more than this share is not corrected for it.
@@ -387,6 +385,8 @@ struct DependenceSettings {
   std::size_t most_functions = 4;
   /// A further function must take away this share more. Bound.
   double least_more = 0.005;
+  /// Functions are chosen without a group of trials and judged by it; so many groups. Bound.
+  std::size_t groups = 4;
   /// Blocks of neighbouring samples of a trial. Bound.
   std::size_t blocks_per_trial = 800;
   /// Time constants of the velocity's memory. Physical.
@@ -445,7 +445,8 @@ struct SelectionThresholds {
   double least_gain_share;
   /// and share of the given model's excess.
   double least_gain_of_excess;
-  /// Independent observations that a trial is worth.
+  /// Independent observations that a trial is worth when structures are compared: far below the number of samples, for
+  /// what separates structures is small flaws of any model, which all samples of a trial share.
   double observations_per_trial;
   /// A trend of which the motion's memory explains this share is no sensor's; above 1: never asked.
   double drift_r2_on_motion;
@@ -463,7 +464,7 @@ struct Settings {
                                            .stop_if_given_below = 1.1,
                                            .least_gain_share = 0.01,
                                            .least_gain_of_excess = 0.0,
-                                           .observations_per_trial = 300.0,
+                                           .observations_per_trial = 60.0,
                                            .drift_r2_on_motion = 1.01};
   SmoothingSettings smoothing;
   PhasesSettings phases;

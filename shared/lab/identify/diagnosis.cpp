@@ -156,6 +156,7 @@ Result<Diagnosis> diagnose(const Problem& problem, const DiagnoseOptions& option
   Solution& chosen = selection.chosen();
   ResidualDependence rest = residual_dependence(residual, chosen);
   out.final_fit = chosen.structure.effects.empty() ? out.base_fit : report(residual, chosen, true);
+  out.base.noise_floor = std::min(out.base.noise_floor, out.final_fit.noise_floor);
   const bool more = more_is_missing(rest, out.final_fit);
   const bool named = !chosen.structure.effects.empty() &&
                      (!more || explain_most(rest, out.base_fit, out.final_fit));

@@ -5,9 +5,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "lab/identify/drift_on_motion.hpp"
 #include "lab/identify/fit_report.hpp"
+#include "lab/identify/structure_posterior.hpp"
 #include "lab/settings.hpp"
 
 namespace tractus {
@@ -70,20 +72,15 @@ Solution& Selection::fitted(const Solution& from, const std::string& effect, int
   return tried_[key] = std::move(found);
 }
 
-bool Selection::clearly_better(const Solution& larger, const Solution& smaller,
-                               double share) const {
+bool Selection::clearly_better(const Solution& larger, const Solution& smaller) const {
+  const SelectionThresholds& thresholds = residual_.problem().selection_thresholds();
   const auto [after, before] = mean_squares(larger, smaller);
   const double numbers = std::max(1.0, numbers_beyond(residual_, larger, smaller));
   const double gained = double(residual_.size()) * (before - after) / std::max(1.0, after) +
                         smaller.prior - larger.prior;
   return gained > kSelection.clear_loss * numbers &&
-         before - after > residual_.problem().selection_thresholds().least_gain_share * before &&
-         before - after > share * excess(base().mean_square());
-}
-
-bool Selection::clearly_better(const Solution& larger, const Solution& smaller) const {
-  return clearly_better(larger, smaller,
-                        residual_.problem().selection_thresholds().least_gain_of_excess);
+         before - after > thresholds.least_gain_share * before &&
+         before - after > thresholds.least_gain_of_excess * excess(base().mean_square());
 }
 
 bool Selection::admissible(const Solution& at) const {
@@ -192,44 +189,33 @@ void Selection::grow() {
 /// where its own search ended.
 void Selection::part(const Solution& at, const Structure& less) {
   Solution found = search(residual_, less, carried(residual_.problem().parameters(less), at), &at);
+  differentiate(residual_, found);
   const auto known = tried_.find(name(less));
   if (known == tried_.end() || found.mean_square() < known->second.mean_square())
     tried_[name(less)] = std::move(found);
 }
 
-void Selection::prune() {
-  for (bool dropped = true; dropped && !chosen_.empty();) {
-    dropped = false;
-    const Structure now = chosen().structure;
-    for (const std::string& id : now.effects) {
-      const Structure less = minus(now, id);
-      const std::string key = name(less);
-      part(Solution(chosen()), less);
-      if (clearly_better(chosen(), tried_.at(key))) continue;
-      chosen_ = key;
-      dropped = true;
-      break;
+/// Fits what is simpler than a structure: without each effect, and with each effect's simpler limit in its place.
+void Selection::simplify(const Structure& whole) {
+  for (const std::string& id : whole.effects) {
+    const Structure less = minus(whole, id);
+    part(Solution(tried_.at(name(whole))), less);
+    for (const Candidate& candidate : residual_.problem().candidates()) {
+      if (candidate.facts.id != id) continue;
+      for (const std::string& parent : candidate.facts.parents)
+        if (!contains(whole, parent) && screens_.contains(parent) && screens_.at(parent).excited)
+          fitted(Solution(tried_.at(name(less))), parent, kSelection.tries);
     }
   }
 }
 
-void Selection::prefer_parents() {
-  for (const Candidate& candidate : residual_.problem().candidates()) {
-    const std::string& id = candidate.facts.id;
-    if (chosen_.empty() || !contains(chosen().structure, id)) continue;
-    for (const std::string& parent : candidate.facts.parents) {
-      if (contains(chosen().structure, parent) || !screens_.contains(parent) ||
-          !screens_.at(parent).excited)
-        continue;
-      const Structure less = minus(chosen().structure, id);
-      if (!tried_.contains(name(less))) continue;
-      Solution from = tried_.at(name(less));
-      differentiate(residual_, from);
-      const Solution& simpler = fitted(from, parent, kSelection.tries);
-      if (!clearly_better(chosen(), simpler, kSelection.least_gain_over_parent))
-        chosen_ = name(simpler.structure);
-    }
-  }
+/// The most probable structure, what is simpler than it fitted too.
+void Selection::choose() {
+  std::set<std::string> simplified;
+  do {
+    chosen_ = name(StructurePosterior(residual_, *this, base()).most_probable());
+    simplify(Structure(chosen().structure));
+  } while (simplified.insert(chosen_).second && go_on(0.9));
 }
 
 /// A trend that is free in every trial can stand in for any slow law. Where it follows the motion
@@ -327,12 +313,7 @@ bool Selection::run(const std::function<void()>& after_singles) {
     for (const std::string& id : pair->structure.effects)
       part(Solution(*pair), minus(pair->structure, id));
   refine(1);
-  for (int size = 1; size <= options_.max_effects; ++size)
-    for (const Solution* larger : best_of(std::size_t(size), 1))
-      if (clearly_better(*larger, chosen())) chosen_ = name(larger->structure);
-  prune();
-  prefer_parents();
-  prune();
+  choose();
   refuse_trends();
   require_lower_error();
   explain_shifts();

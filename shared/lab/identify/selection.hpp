@@ -36,10 +36,7 @@ class Selection {
   const std::vector<std::string>& order() const { return order_; }
   /// An effect that reached the floor by imitation and is not named for that; empty for none.
   const std::string& refused() const { return refused_; }
-  /// Does the larger bring the residual clearly nearer to the floor than the smaller? @param share
-  /// of what the given model left over the floor that it must take away besides; by default that of
-  /// the rig's Sharpness.
-  bool clearly_better(const Solution& larger, const Solution& smaller, double share) const;
+  /// Does the larger bring the residual so much nearer to the floor than the smaller that it is worth growing further?
   bool clearly_better(const Solution& larger, const Solution& smaller) const;
   /// Every effect's numbers stand to each other as its law means them.
   bool admissible(const Solution& at) const;
@@ -51,8 +48,8 @@ class Selection {
   void grow();
   void reshape(std::size_t effects);
   void part(const Solution& whole, const Structure& less);
-  void prune();
-  void prefer_parents();
+  void simplify(const Structure& whole);
+  void choose();
   void refuse_trends();
   void require_lower_error();
   void explain_shifts();

@@ -40,9 +40,8 @@ StructurePosterior::StructurePosterior(const Residual& residual, const Selection
     if (!(s.structure == chosen_) && !selection.admissible(s)) continue;
     entries_.push_back({s.structure, 0.0, s.mean_square(), held_out_losses(residual, s, scale)});
   }
-  leave_out_immaterial();
   weigh(residual);
-  leave_out_no_better(residual, selection, chosen);
+  leave_out_immaterial(residual, selection);
   std::ranges::stable_sort(entries_, std::greater<>(), &Entry::probability);
 }
 
@@ -56,29 +55,29 @@ bool StructurePosterior::simpler(const Structure& one, const Structure& other) c
          std::ranges::find(parents->second, gained.front()) != parents->second.end();
 }
 
-void StructurePosterior::leave_out_immaterial() {
-  const double least = std::pow(1.0 - kSettings.selection.least_fall, -2.0);
-  std::vector<Entry> material;
-  for (const Entry& whole : entries_) {
-    const bool trifle = std::ranges::any_of(entries_, [&](const Entry& part) {
-      return simpler(part.structure, whole.structure) &&
-             part.losses.sum() < least * whole.losses.sum();
+/// A structure that does not lower the unweighted held-out error of the primary channel below that of a simpler one by a
+/// material share is none.
+void StructurePosterior::leave_out_immaterial(const Residual& residual,
+                                              const Selection& selection) {
+  const auto error = [&](Entry& entry) {
+    if (!entry.held_out_rmse)
+      entry.held_out_rmse = held_out_rmse(residual, selection.tried().at(name(entry.structure)));
+    return *entry.held_out_rmse;
+  };
+  const auto immaterial = [&](Entry& whole) {
+    if (whole.structure == chosen_ || whole.probability < kPosterior.least_asked) return false;
+    return std::ranges::any_of(entries_, [&](Entry& part) {
+      return (part.structure.effects.size() < whole.structure.effects.size() ||
+              simpler(part.structure, whole.structure)) &&
+             error(whole) > (1.0 - kSettings.selection.least_fall) * error(part);
     });
-    if (!trifle || whole.structure == chosen_) material.push_back(whole);
-  }
-  entries_ = std::move(material);
-}
-
-/// A larger structure that leads, but does not lower the unweighted held-out error of the primary channel, is none.
-void StructurePosterior::leave_out_no_better(const Residual& residual, const Selection& selection,
-                                             const Solution& chosen) {
-  const double most = (1.0 - kSettings.selection.least_fall) * held_out_rmse(residual, chosen);
-  for (int round = 0; round < kPosterior.contenders; ++round) {
-    const auto leading = std::ranges::max_element(entries_, {}, &Entry::probability);
-    if (leading->structure.effects.size() <= chosen_.effects.size() ||
-        held_out_rmse(residual, selection.tried().at(name(leading->structure))) < most)
-      return;
-    entries_.erase(leading);
+  };
+  for (;;) {
+    std::vector<Entry> material;
+    for (Entry& entry : entries_)
+      if (!immaterial(entry)) material.push_back(entry);
+    if (material.size() == entries_.size()) return;
+    entries_ = std::move(material);
     weigh(residual);
   }
 }
@@ -87,14 +86,14 @@ void StructurePosterior::weigh(const Residual& residual) {
   for (Entry& entry : entries_) entry.probability = 0.0;
   const Problem& problem = residual.problem();
   const Eigen::Index folds = entries_.front().losses.size();
-  const double per_fold = kPosterior.observations_per_trial * residual.trials() / double(folds);
+  const double per_fold =
+      problem.selection_thresholds().observations_per_trial * residual.trials() / double(folds);
   Eigen::MatrixXd scores(folds, Eigen::Index(entries_.size()));
   for (std::size_t m = 0; m < entries_.size(); ++m) {
     const Structure& structure = entries_[m].structure;
-    const double of_each = 0.5 * problem.free_per_trial(structure) * std::log(per_fold);
     const double of_all = log_structures(problem.candidates().size(), structure.effects.size());
-    scores.col(Eigen::Index(m)) = -0.5 * per_fold * entries_[m].losses.array().max(1e-300).log() -
-                                  of_each - of_all / double(folds);
+    scores.col(Eigen::Index(m)) =
+        -0.5 * per_fold * entries_[m].losses.array().max(1e-300).log() - of_all / double(folds);
   }
   std::mt19937_64 random(1);  // the same answer each time
   std::exponential_distribution<double> share(1.0);

@@ -20,6 +20,7 @@ class StructurePosterior {
  public:
   StructurePosterior(const Residual& residual, const Selection& selection, const Solution& chosen);
 
+  const Structure& most_probable() const { return entries_.front().structure; }
   /// Among those fitted.
   double of_structure(const Structure& structure) const;
   /// Of all structures with that effect.
@@ -34,11 +35,10 @@ class StructurePosterior {
     Structure structure;
     double probability = 0.0, mean_square = 0.0;
     Eigen::VectorXd losses;  // by fold, held out
+    std::optional<double> held_out_rmse = {};
   };
-  void leave_out_immaterial();
+  void leave_out_immaterial(const Residual& residual, const Selection& selection);
   bool simpler(const Structure& one, const Structure& other) const;
-  void leave_out_no_better(const Residual& residual, const Selection& selection,
-                           const Solution& chosen);
   void weigh(const Residual& residual);
 
   std::vector<Entry> entries_;  // most probable first

@@ -57,11 +57,8 @@ const effects::EffectFacts& PalpationParameterSpace::facts_of(std::string_view i
 }
 
 PalpationParameterSpace::PalpationParameterSpace(models::PalpationModel model, double field_per_m,
-                                                 double spacing_s, UserEffects user_effects)
-    : model_(std::move(model)),
-      user_effects_(std::move(user_effects)),
-      field_per_m_(field_per_m),
-      spacing_s_(spacing_s) {
+                                                 UserEffects user_effects)
+    : model_(std::move(model)), user_effects_(std::move(user_effects)), field_per_m_(field_per_m) {
   for (const effects::EffectInstance& use : model_.effects) {
     auto facts = effects::palpation_facts(use);
     core::require(bool(facts), "a model's effects are known");
@@ -98,7 +95,7 @@ void PalpationParameterSpace::add_delay() {
   Parameter delay{};
   delay.pointer = "/sensor/force_delay_s";
   if (fixed(delay.pointer) || std::ranges::any_of(own_, &effects::EffectFacts::is_delay)) return;
-  delay.high = std::max(kPalpationPrior.most_delay_s, spacing_s_);
+  delay.high = kPalpationPrior.most_delay_s;
   delay.low = -delay.high;
   delay.step = 0.1 * delay.high;
   delay.prior_sd = 0.5 * delay.high;

@@ -17,8 +17,7 @@ class PalpationParameterSpace {
  public:
   /// @param field_per_m  a usual |g| where the recordings touch bone: where the search for an
   /// exponent has its reference
-  /// @param spacing_s  between two samples as recorded: the force may be late by one of them
-  PalpationParameterSpace(models::PalpationModel model, double field_per_m, double spacing_s,
+  PalpationParameterSpace(models::PalpationModel model, double field_per_m,
                           UserEffects user_effects = {});
 
   /// Base, the force's delay ("/sensor/force_delay_s"), then the model's own effects, then those added.
@@ -51,7 +50,7 @@ class PalpationParameterSpace {
   models::PalpationModel model_;
   UserEffects user_effects_;
   std::vector<effects::EffectFacts> own_;  // of the model's effects
-  double field_per_m_, spacing_s_;
+  double field_per_m_;
   std::vector<Slot> slots_;
 };
 

@@ -28,6 +28,8 @@ using core::Result;
 using math::Vec3;
 
 constexpr const auto& kCompared = kSettings.palpation_fit;
+/// Median of the square of three normal numbers over its mean: of χ² with 3 degrees of freedom, over 3.
+constexpr double kMedianOfSquares = 2.36597 / 3.0;
 /// What a drift counts when structures are compared: the orders of one course, which the channels
 /// share as a rule, and more than the six numbers of a constant bias, which it contains.
 constexpr int kDriftCounts = 2 * Trend::kOrders;
@@ -38,7 +40,7 @@ class PalpationProblem final : public Problem {
   PalpationProblem(volume::ForceField field, models::PalpationModel model, UserEffects user_effects,
                    std::vector<PalpationRecording> trials, std::optional<trial::StatedTract> tract)
       : field_(std::move(field)),
-        numbers_(std::move(model), 500.0, spacing_of(trials), std::move(user_effects)),
+        numbers_(std::move(model), 500.0, std::move(user_effects)),
         trials_(std::move(trials)),
         trends_(trials_.size()),
         rests_(trials_.size()),
@@ -75,15 +77,18 @@ class PalpationProblem final : public Problem {
   void residuals_near(const Structure& structure, std::span<const double> values,
                       const std::vector<std::vector<double>>& points, int k,
                       Eigen::Ref<Eigen::MatrixXd> out) const override;
+  void leave_stretches_out(const Structure& structure, int k, int stretches,
+                           Eigen::Ref<Eigen::VectorXd> residual) const override {
+    if (has_drift(structure)) trends_[std::size_t(k)].leave_stretches_out(stretches, residual);
+  }
   int free_per_trial(const Structure& structure) const override {
     return has_drift(structure) ? kDriftCounts : 0;
   }
-  double noise_floor(const Structure&, std::span<const double>) const override {
-    return channels_.front().noise_floor;
-  }
+  double noise_floor(const Structure& structure, std::span<const double> values) const override;
   Residuals full_rate(const Structure& structure, std::span<const double> values,
                       int k) const override;
   States states(int k) const override;
+  States predictors(int k) const override;
   std::vector<Derived> derived(const Structure& structure, std::span<const double> values,
                                std::string_view effect) const override;
   const std::vector<std::string>& notes() const override { return notes_; }
@@ -108,8 +113,7 @@ class PalpationProblem final : public Problem {
     if (!touches_) return;
     const auto middle = field.begin() + std::ptrdiff_t(field.size() / 2);
     std::ranges::nth_element(field, middle);
-    numbers_ = PalpationParameterSpace(numbers_.model(), *middle, spacing_of(trials_),
-                                       numbers_.user_effects());
+    numbers_ = PalpationParameterSpace(numbers_.model(), *middle, numbers_.user_effects());
   }
   bool touches() const { return touches_; }
 
@@ -117,11 +121,6 @@ class PalpationProblem final : public Problem {
   bool has_drift(const Structure& structure) const { return !numbers_.drift(structure).empty(); }
   const PalpationRecording& trial(int k) const { return trials_[std::size_t(k)]; }
   static Trend trend_of(const PalpationRecording& r);
-  static double spacing_of(const std::vector<PalpationRecording>& trials) {
-    double most_s = 0.0;
-    for (const auto& r : trials) most_s = std::max(most_s, r.spacing_s);
-    return most_s;
-  }
   void normalise();
   void set_candidates();
   void set_instants();
@@ -337,6 +336,63 @@ States PalpationProblem::states(int k) const {
   add("force_y_N", [&](std::size_t i) { return at.wrench_H[i].force_N.y(); });
   add("force_z_N", [&](std::size_t i) { return at.wrench_H[i].force_N.z(); });
   return out;
+}
+
+/// No acceleration: its error goes with that of the place, by which bone's force errs.
+States PalpationProblem::predictors(int k) const {
+  States out = states(k);
+  const auto add = [&](const char* name, auto vector_V) {
+    for (int axis = 0; axis < 3; ++axis) {
+      out.names.push_back(fmt::format("{} {}", name, "xyz"[axis]));
+      auto& column = out.values.emplace_back();
+      for (const effects::HandleMotion& h : trial(k).motion.handle)
+        column.push_back((h.X_VH.q.conjugate() * vector_V(h))[axis]);
+    }
+  };
+  add("velocity", [](const effects::HandleMotion& h) -> Vec3 { return h.v_m_s; });
+  add("turning", [](const effects::HandleMotion& h) -> Vec3 { return h.omega_rad_s; });
+  add("gravity", [](const effects::HandleMotion& h) -> Vec3 { return h.down; });
+  return out;
+}
+
+/// Sensor and motion say too little of noise whose neighbours are alike: how much more there is of either is estimated from
+/// what the model leaves, by medians, so that what happens now and then does not count: of the sensor's where the motion's
+/// errors do nothing, of the motion's where they do.
+double PalpationProblem::noise_floor(const Structure& structure,
+                                     std::span<const double> values) const {
+  struct Sample {
+    double error, sensor, motion;  // squares, N²
+    bool judged;
+  };
+  std::vector<Sample> all;
+  for (int k = 0; k < trials(); ++k) {
+    const Residuals left = full_rate(structure, values, k);
+    const double sensor = trial(k).sensor_squares().head<3>().sum();
+    for (std::size_t i = 0; i < left.t_s.size(); ++i) {
+      if (left.judgement[i] == Judgement::no_equilibrium || left.judgement[i] == Judgement::at_jump)
+        continue;
+      all.push_back({std::pow(left.channels[0][i], 2), sensor, std::pow(trial(k).motion_N[i], 2),
+                     left.judgement[i] == Judgement::judged});
+    }
+  }
+  const auto times = [&](auto counts, auto share) {
+    std::vector<double> ratios;
+    for (const Sample& s : all)
+      if (counts(s)) ratios.push_back(share(s));
+    if (ratios.size() < kCompared.least_for_noise) return 1.0;
+    const auto middle = ratios.begin() + std::ptrdiff_t(ratios.size() / 2);
+    std::ranges::nth_element(ratios, middle);
+    return std::max(1.0, *middle / kMedianOfSquares);
+  };
+  const double of_sensor = times([](const Sample& s) { return s.motion < 0.1 * s.sensor; },
+                                 [](const Sample& s) { return s.error / s.sensor; });
+  const double of_motion =
+      times([](const Sample& s) { return s.motion >= s.sensor; },
+            [&](const Sample& s) { return (s.error - of_sensor * s.sensor) / s.motion; });
+  double sum = 0.0, count = 0.0;
+  for (const Sample& s : all)
+    if (s.judged) sum += of_sensor * s.sensor + of_motion * s.motion, count += 1.0;
+  return count > 0.0 ? std::sqrt(sum / count) : channels_.front().noise_floor;
 }
 
 std::vector<Derived> PalpationProblem::derived(const Structure& structure,

@@ -115,6 +115,36 @@ TEST(PalpationProblem, FindsBackTheNumbersOfTheBase) {
       1.0, 0.01);
 }
 
+TEST(PalpationProblem, AForceRecordedALittleLateIsANumberOfTheRecordingAndNoEffect) {
+  const auto problem = problem_of(model({{"time_delay", {1.5e-3}}}), model());
+  const auto found = fit(*problem, {}, {.threads = 1, .held_out = false});
+  ASSERT_TRUE(found) << found.error().what;
+  EXPECT_NEAR(found->whitened_rms, 1.0, 0.06);
+  EXPECT_NEAR(estimate(*found, "/sensor/force_delay_s").value, 1.5e-3, 2e-4);
+}
+
+TEST(PalpationProblem, NoiseThatIsColouredIsInTheFloor) {
+  // An autoregressive process of order 1: variance s²/(1 − a²) of steps s, correlated over 10 samples.
+  constexpr double kStep_N = 0.01, kKept = 0.9;
+  std::mt19937 random(11);
+  std::normal_distribution<double> normal;
+  auto set = recordings(model(), 4, 500);
+  for (auto& trial : set.trials) {
+    Vec3 level = Vec3::Zero();
+    for (math::Wrench& w : trial.wrench_H) {
+      level = kKept * level + kStep_N * Vec3(normal(random), normal(random), normal(random));
+      w.force_N += level;
+    }
+  }
+  const double total_N =
+      std::sqrt(3.0) * std::hypot(0.01, kStep_N / std::sqrt(1.0 - kKept * kKept));
+  const auto problem = make_palpation_problem(model(), std::move(set), corner(), {.threads = 1});
+  ASSERT_TRUE(problem) << problem.error().what;
+  const auto found = fit(**problem, {}, {.threads = 1, .held_out = false});
+  ASSERT_TRUE(found) << found.error().what;
+  EXPECT_NEAR(found->noise_floor / total_N, 1.0, 0.12);
+}
+
 class AHiddenEffect : public testing::TestWithParam<effects::EffectInstance> {};
 
 TEST_P(AHiddenEffect, IsFoundBackWithItsNumbers) {

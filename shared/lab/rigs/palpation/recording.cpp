@@ -197,7 +197,6 @@ Result<PalpationRecording> prepare(trial::PalpationMeasurement&& trial, const Ve
         where, fmt::format("{:.3g} samples per second, at least {} are expected", 1.0 / spacing_s,
                            kPalpationRecording.slowest_rate_Hz));
   out.id = trial.id;
-  out.spacing_s = spacing_s;
   const auto stride =
       std::size_t(std::max(1.0, std::ceil(0.999 / (spacing_s * kPalpationRecording.fastest_Hz))));
   smooth_poses(trial, down, stride, out);

@@ -25,7 +25,6 @@ inline Vec6 stacked(const math::Wrench& wrench) {
 struct PalpationRecording {
   static constexpr double kDead = 1e6;
   std::string id, note;
-  double spacing_s = 0.0;              ///< between two samples as recorded
   models::PalpationMotion motion;      ///< smoothed; every so many-th sample of a fast recording
   std::vector<math::Vec3> p_sd_m;      ///< standard error of the smoothed position, V
   std::vector<double> turn_sd_rad;     ///< of the smoothed orientation, about any axis
@@ -41,6 +40,7 @@ struct PalpationRecording {
   double usual_square = 1.0;             ///< mean of a whitened residual's squares by noise alone
   std::vector<Judgement> judgement;      ///< per sample
   Vec6 floor = Vec6::Zero();             ///< rmse of the judged samples under a true model
+  std::vector<double> motion_N;          ///< per sample: of the force, by the motion's errors
   std::vector<double> field_per_m;       ///< |g| at the tip, where it touches
 
   std::size_t size() const { return motion.t_s.size(); }

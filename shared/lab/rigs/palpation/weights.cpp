@@ -304,6 +304,9 @@ void weigh(const models::PalpationRuntime& runtime, PalpationRecording& r) {
   const models::PalpationAnswer at = Course(runtime, r).best();
   r.deflection_m = at.deflection_m;
   const auto by_motion = motion_covariance(runtime, r, at);
+  r.motion_N.clear();
+  for (const Mat6& covariance : by_motion)
+    r.motion_N.push_back(std::sqrt(covariance.topLeftCorner<3, 3>().trace()));
   const auto snapped = snaps(runtime, r, at);
   set_trust(runtime, r, at, by_motion, snapped);
   const Vec6 sensor = r.noise_sd.cwiseAbs2();
