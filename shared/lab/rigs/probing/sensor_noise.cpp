@@ -81,7 +81,7 @@ double ProbingProblem::floor_of_effects(const models::ProbingModel& model) const
 
 double ProbingProblem::noise_floor(const Structure& structure,
                                    std::span<const double> values) const {
-  if (structure.effects.empty()) return channels_.front().noise_floor;
+  if (turns_ || structure.effects.empty()) return channels_.front().noise_floor;
   return std::hypot(floor_of_bone_, floor_of_effects(numbers_.with(structure, values)));
 }
 
