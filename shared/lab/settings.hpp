@@ -36,9 +36,10 @@ struct SmoothingSettings {
   /// A stretch whose mean square exceeds its expected value by more than so many standard errors is
   /// too smooth. Tuned.
   double significant_errors = 4.0;
-  /// What a single stretch adds to the choice for the whole at most, in squares of the noise.
-  /// Tuned.
+  /// What a single stretch adds to the choice for the whole at most, in squares of the noise. Tuned.
   double greatest_misfit = 1.5;
+  /// Least noise, in largest steps: below, the filter's sums lose all digits. Numeric.
+  double least_noise = 1e-5;
   /// Long recordings are smoothed in stretches of so many samples. Bound.
   std::size_t stretch_samples = 1u << 17;
   /// By which neighbouring stretches overlap. Bound.

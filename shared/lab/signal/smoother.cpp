@@ -340,6 +340,9 @@ Smoothed smooth(std::span<const double> t_s, std::span<const double> y, double n
   core::require(t_s.size() == y.size() && y.size() >= 4 && noise_sd > 0.0,
                 "a smoother needs four samples and their noise");
   const std::size_t n = y.size();
+  double most = 0.0;
+  for (std::size_t k = 1; k < y.size(); ++k) most = std::max(most, std::abs(y[k] - y[k - 1]));
+  noise_sd = std::max(noise_sd, kSmoothing.least_noise * most);
   Smoothed out;
   out.noise_sd = noise_sd;
   for (auto* all : {&out.value, &out.rate, &out.acceleration, &out.value_sd, &out.rate_sd,

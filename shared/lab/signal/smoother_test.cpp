@@ -161,6 +161,19 @@ TEST(Smoother, AKinkIsFollowedAndItsErrorOwnedUpTo) {
   EXPECT_GT(s.rate_sd[2000], 5.0 * s.rate_sd[1000]);
 }
 
+TEST(Smoother, NoiseThatIsSaidToBeNearlyNothingLeavesTheSpeedRight) {
+  std::vector<double> t_s, y;
+  for (int k = 0; k < 4000; ++k) {
+    t_s.push_back(k / 1000.0);
+    y.push_back(k < 2000 ? 0.0 : 8.0 * (t_s.back() - 2.0));  // still, then at 8 a second
+  }
+  const Smoothed s = smooth(t_s, y, 1e-12);
+  for (std::size_t k = 0; k < y.size(); ++k)
+    if (k < 1900 || k > 2100) {
+      EXPECT_NEAR(s.rate[k], k < 2000 ? 0.0 : 8.0, 0.01) << k;
+    }
+}
+
 TEST(Smoother, LongRecordingsAreSmoothedInStretchesWithoutASeam) {
   const auto r = sines(1000.0, 140.0, 5e-7);
   const Smoothed s = smooth(r.t_s, r.y, 5e-7);

@@ -17,20 +17,23 @@ using core::Errc;
 using core::Error;
 using core::Result;
 
-/// The smallest difference of two neighbours that are not equal, if all others are multiples of it;
-/// else 0: how coarsely a channel was written down.
+/// The step of which all differences of two neighbours are multiples, 0 if there is none: how coarsely a channel was recorded.
+/// Begun with the smallest difference and refined by each larger one, for a file rounds the multiples once more.
 double quantum(std::span<const double> y) {
   constexpr std::size_t kLook = 20'000;
-  const std::size_t n = std::min(y.size(), kLook);
-  double least = std::numeric_limits<double>::infinity();
-  for (std::size_t k = 1; k < n; ++k)
-    if (const double d = std::abs(y[k] - y[k - 1]); d > 0.0) least = std::min(least, d);
-  if (!std::isfinite(least)) return 0.0;
-  for (std::size_t k = 1; k < n; ++k) {
-    const double steps = std::abs(y[k] - y[k - 1]) / least;
-    if (std::abs(steps - std::round(steps)) > 0.05) return 0.0;
+  std::vector<double> steps;
+  for (std::size_t k = 1; k < std::min(y.size(), kLook); ++k)
+    if (const double d = std::abs(y[k] - y[k - 1]); d > 0.0) steps.push_back(d);
+  if (steps.empty()) return 0.0;
+  std::ranges::sort(steps);
+  double q = steps.front(), products = 0.0, squares = 0.0;
+  for (const double d : steps) {
+    const double n = std::round(d / q);
+    if (std::abs(d / q - n) > 0.1) return 0.0;
+    products += d * n, squares += n * n;
+    q = products / squares;
   }
-  return least;
+  return q;
 }
 
 struct Noise {
