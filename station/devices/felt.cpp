@@ -13,10 +13,11 @@ constexpr int kLeastFelt = 2;  // places to each side
 constexpr double kHole_m = 0.0015, kBeside_m = 0.004, kFarBeside_m = 0.007;
 constexpr double kGivesWeight = 0.2;
 constexpr double kThrough_N = 0.06;
-constexpr double kHoleLike_N = 0.04;  // more: a hole
-constexpr double kNoEnd_N = 0.15;     // of a tap, less: nothing stopped it
-constexpr double kApart_m = 0.004;    // of two suspects on one wall
-constexpr double kRim_m = 0.006;      // behind the first place that is enclosed
+constexpr double kHoleLike_N = 0.045;  // more: a hole
+constexpr double kNoEnd_N = 0.15;      // of a tap, less: nothing stopped it
+constexpr double kApart_m = 0.004;     // of two suspects on one wall
+constexpr double kRim_m = 0.006;       // behind the first place that is enclosed
+constexpr double kThinRim_m = 0.007;   // behind that, where thin bone often lets a tip through
 constexpr double kNever = -1e9;
 constexpr std::array<const char*, 4> kWallNames{"medial", "superior", "lateral", "inferior"};
 
@@ -118,12 +119,24 @@ double FeltWalls::likeness_at(const std::array<Felt, kPlaces>& wall, int place) 
   return std::min(caught[0] / within[0], caught[1] / within[1]) + kGivesWeight * gives + through_N;
 }
 
+// Depth from which places count.
+double FeltWalls::counts_from_m() const noexcept {
+  const auto gave_way = [&](const auto& wall) {
+    for (int place = 0; place * kPlace_m < rim_m_ + kThinRim_m && place < kPlaces; ++place)
+      for (const Look& look : wall[std::size_t(place)])
+        if (look.through) return true;
+    return false;
+  };
+  return std::ranges::count_if(walls_, gave_way) > 1 ? rim_m_ + kThinRim_m : rim_m_;
+}
+
 FeltWalls::Likeness FeltWalls::likeness(const Walls& walls) const noexcept {
+  const double from_m = counts_from_m();
   Likeness out;
   for (std::size_t wall = 0; wall < 4; ++wall)
     for (int place = 0; place < kPlaces; ++place)
       out[wall][std::size_t(place)] =
-          place * kPlace_m < rim_m_ ? kNever : likeness_at(walls[wall], place);
+          place * kPlace_m < from_m ? kNever : likeness_at(walls[wall], place);
   return out;
 }
 

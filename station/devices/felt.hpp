@@ -23,11 +23,13 @@ double normal_of(std::uint64_t key) noexcept;
 ///     caught  the push along the axis towards the place, mean over 3 mm to either side, the lesser
 ///     gives   the push back 4 to 7 mm before and behind, less that within 1.5 mm
 ///
-/// caught + gives/5, and 0.06 N more where the tip went through, is how much a place is like a hole. The places of which the first looks say most
-/// are the suspects; they are stroked again, and of these new looks alone the answer is made: the
-/// wall of the place that is most like a hole, if it is so by more than a threshold. Taps that
-/// nothing stopped are a breach in front. It sees nothing else. Weights and thresholds are choices
-/// of ours.
+/// caught + gives/5, and 0.06 N more where the tip went through, is how much a place is like a hole.
+/// The places of which the first looks say most are the suspects; they are stroked again, and of
+/// these new looks alone the answer is made: the wall of the place that is most like a hole, if it is
+/// so by more than a threshold. Places within 6 mm of where bone begins all round are the rim of the
+/// mouth and do not count, nor 7 mm more where several walls let the tip through there. Taps that
+/// nothing stopped are a breach in front. It sees nothing else. Weights and thresholds are choices of
+/// ours.
 class FeltWalls {
  public:
   FeltWalls(const DeviceOptions& options);
@@ -67,6 +69,7 @@ class FeltWalls {
   Likeness likeness(const Walls& walls) const noexcept;
   static double likeness_at(const std::array<Felt, kPlaces>& wall, int place) noexcept;
   Likest likest() const noexcept;
+  double counts_from_m() const noexcept;
 
   std::uint64_t seed_;
   HandSense sense_;

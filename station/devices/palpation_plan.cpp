@@ -52,21 +52,21 @@ PalpationPlan::PalpationPlan(const DeviceOptions& options)
 void PalpationPlan::plan_palpation() {
   add(1.2, {.depth_m = kMouth_m, .act = Act::approach});
   for (int wall = 0; wall < 4; ++wall) {
-    Key key{.depth_m = shallowest_m_, .act = Act::approach, .wall = wall};
-    add(0.3, key);
+    Key key{.depth_m = deepest_m_, .act = Act::approach, .wall = wall};
+    add(0.6, key);
     key.press = 1.0;
     add(0.6, key);
     key.act = Act::stroke;
     for (key.look = 0; key.look < kFirstLooks; ++key.look) {
-      key.depth_m = key.look % 2 == 0 ? deepest_m_ : shallowest_m_;
-      add(2.0, key);
+      key.depth_m = key.look % 2 == 0 ? shallowest_m_ : deepest_m_;
+      add(1.8, key);
     }
     key.act = Act::approach, key.press = 0.0, key.look = -1;
     add(0.3, key);
     key.depth_m = kMouth_m;
-    add(0.2, key);
+    add(0.5, key);
   }
-  add(0.8, {.depth_m = deepest_m_, .act = Act::approach});
+  add(1.6, {.depth_m = deepest_m_, .act = Act::approach});
   for (int tap = 0; tap < 3; ++tap) {
     add(0.5, {.depth_m = channel_.length_m + kTapBeyond_m, .act = Act::tap});
     add(0.4, {.depth_m = deepest_m_, .act = Act::approach});

@@ -37,8 +37,8 @@ struct Grip {
   double reach = 1.0;
 };
 
-/// Approach to the entry; from the mouth along each side wall in turn a stroke inwards and one
-/// outwards, along the tract's axis, pressed all the way [Zoller2020, Fig. 2]; taps at the end; then,
+/// Approach to the entry; in, and along each side wall in turn a stroke outwards and one inwards,
+/// along the tract's axis, pressed all the way [Zoller2020, Fig. 2]; taps at the end; then,
 /// as a surgeon goes back to a place that felt wrong, three more strokes each way over each suspect;
 /// withdrawal. Between
 /// key points by minimum jerk [Flash1985]: s = 10τ³ − 15τ⁴ + 6τ⁵. Tremor of 8–12 Hz and a slow
@@ -56,7 +56,7 @@ struct Grip {
 class PalpationPlan {
  public:
   static constexpr int kSuspects = 4;
-  static constexpr int kFirstLooks = 2;           ///< in and out, along the whole wall
+  static constexpr int kFirstLooks = 2;           ///< out and in, along the whole wall
   static constexpr int kLooks = kFirstLooks + 6;  ///< and those of a recheck
 
   PalpationPlan(const DeviceOptions& options);

@@ -41,7 +41,8 @@ constexpr double kPress_N = 0.30;
 constexpr double kBendRate_m_per_s = 0.02;
 constexpr double kFirstBend_m = 0.010, kMostBend_m = 0.030;
 // A wall that held and holds no more for a moment let the tip through: the hand eases off, goes out
-// to the mouth and in again, and presses less from then on.
+// to the mouth and in again, and presses less from then on; so it does, once in a stroke, where
+// nothing held from the beginning.
 constexpr double kHeld_N = 0.15, kLoose_N = 0.06, kLoose_s = 0.04;
 constexpr double kEase_s = 0.15, kWayOut_s = 0.8, kLess = 0.8, kLeastMost_m = 0.010;
 
@@ -68,7 +69,8 @@ class SimLambda6 final : public Device, public SimulatedTrainee {
     velocity_.setZero(), turn_.setZero(), wrench_ = {};
     elapsed_s_ = 0.0, last_ = -1, felt_ = FeltWalls(options_);
     rechecking_ = tapping_ = false, done_ = false, progress_ = 0.0;
-    most_bend_m_ = kMostBend_m, loose_s_ = 0.0, slipped_s_ = -1.0, held_m_.reset();
+    most_bend_m_ = kMostBend_m, loose_s_ = 0.0, slipped_s_ = -1.0, lost_stroke_ = -1,
+    held_m_.reset();
     open_ = true;
     return kLimits;
   }
@@ -119,7 +121,7 @@ class SimLambda6 final : public Device, public SimulatedTrainee {
     const Intent before = intent_;
     come_back(gap_s);
     intent_ = plan_.at(elapsed_s_, grip_);
-    if (slipped_s_ >= 0.0 && intent_.act == Act::stroke) intent_.act = Act::approach;
+    if (slipped_s_ >= 0.0) intent_.act = Act::approach;
     const Vec3 velocity = (intent_.X_DH.p - before.X_DH.p) / gap_s;
     for (int i = 0; i < steps; ++i) integrate(velocity, gap_s / steps);
     feel();
@@ -159,10 +161,11 @@ class SimLambda6 final : public Device, public SimulatedTrainee {
   void heed_slip(double felt_N, double gap_s) noexcept {
     if (felt_N > kHeld_N) held_m_ = felt_depth_m();
     loose_s_ = felt_N < kLoose_N ? loose_s_ + gap_s : 0.0;
-    if (slipped_s_ >= 0.0 || !held_m_ || loose_s_ < kLoose_s) return;
-    felt_.note_through(intent_, *held_m_);
+    const int stroke = intent_.wall * PalpationPlan::kLooks + intent_.look;
+    if (slipped_s_ >= 0.0 || loose_s_ < kLoose_s || (!held_m_ && stroke == lost_stroke_)) return;
+    if (held_m_) felt_.note_through(intent_, *held_m_);
     most_bend_m_ = std::max(kLess * grip_.bend_m, kLeastMost_m);
-    slipped_s_ = 0.0, held_m_.reset();
+    slipped_s_ = 0.0, held_m_.reset(), lost_stroke_ = stroke;
   }
 
   /// After a slip: eases off, out to the mouth and in again, presses anew. The plan goes on.
@@ -203,6 +206,7 @@ class SimLambda6 final : public Device, public SimulatedTrainee {
   double elapsed_s_ = 0.0;
   Grip grip_;
   double most_bend_m_ = kMostBend_m, loose_s_ = 0.0;
+  int lost_stroke_ = -1;               ///< in which nothing held
   double slipped_s_ = -1.0;            ///< since the last slip; negative: it is over
   std::optional<double> held_m_ = {};  ///< depth at which the wall last held
   core::Instant_ns last_ = -1;

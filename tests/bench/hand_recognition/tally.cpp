@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <limits>
 #include <map>
+#include <span>
 
 #include "core/file.hpp"
 #include "plot/figure.hpp"
@@ -95,10 +96,11 @@ void print_table(const std::vector<Tried>& tried) {
 }
 
 void write_scatter(const std::filesystem::path& path, const std::vector<Tried>& tried) {
-  plot::Panel panel{.title = "SIMULATED hand: share of right answers of each form of a case",
-                    .x_label = "d′ of the certificate",
-                    .y_label = "share right",
-                    .height_px = 420};
+  plot::Panel panel;
+  panel.title = "SIMULATED hand: share of right answers of each form of a case";
+  panel.x_label = "d′ of the certificate";
+  panel.y_label = "share right";
+  panel.height_px = 420;
   plot::Line curve{.label = "foretold", .x = {}, .y = {}, .colour = "#888888"};
   double most = 4.0;
   for (const Tried& one : tried) most = std::max(most, one.d_prime);
@@ -107,11 +109,12 @@ void write_scatter(const std::filesystem::path& path, const std::vector<Tried>& 
   panel.lines.push_back(std::move(curve));
   add_points(tried, "passes", "#1b4f8f", true, panel);
   add_points(tried, "does not pass", "#b03a2e", false, panel);
-  const std::string text = plot::svg({.title = "Recognition against detectability",
-                                      .panels = {panel},
-                                      .note = fmt::format("r = {:.2f}", correlation(tried))});
-  const auto written = core::write_file(
-      path, core::ByteView(reinterpret_cast<const std::uint8_t*>(text.data()), text.size()));
+  plot::Figure figure;
+  figure.title = "Recognition against detectability";
+  figure.panels = {panel};
+  figure.note = fmt::format("r = {:.2f}", correlation(tried));
+  const std::string text = plot::svg(figure);
+  const auto written = core::write_file(path, std::as_bytes(std::span(text)));
   if (written) return;
   fmt::print(stderr, "{}\n", written.error().what);
   std::exit(2);

@@ -15,11 +15,11 @@ namespace tractus::bench {
 /// The trials of one form of one case.
 struct Tried {
   std::string where;  ///< "L3 left, filled"
-  std::optional<volume::Wall> breach;
+  std::optional<volume::Wall> breach = {};
   double d_prime = 0.0;
   bool passes = true;
   int trials = 0, right = 0;
-  std::vector<std::string> said;  ///< [trial]: a wall or "whole"
+  std::vector<std::string> said = {};  ///< [trial]: a wall or "whole"
 
   double rate() const { return double(right) / trials; }
 };
