@@ -12,6 +12,7 @@ constexpr double kOutside_m =
     0.030;  // How far beyond the wall the straight tip would be at the deepest point.
 constexpr double kBeforeBone_m = 0.012;  // Where the first feed begins: bone may reach so far out.
 constexpr double kMouth_m = -0.002;
+constexpr double kClear_m = -0.025;  // out of the bone and of what lies beside the mouth
 constexpr double kShortOfEnd_m = 0.001;
 constexpr double kBack_m = 0.004;
 constexpr int kFeeds = 8;
@@ -141,7 +142,8 @@ Intent PalpationPlan::at(double t_s, const Grip& grip) const noexcept {
   Intent out;
   out.act = to.act, out.wall = to.wall, out.look = to.look;
   out.button = to.act == Act::drill;
-  out.depth_m = kMouth_m + grip.reach * (from.depth_m + s * (to.depth_m - from.depth_m) - kMouth_m);
+  const double planned_m = from.depth_m + s * (to.depth_m - from.depth_m);
+  out.depth_m = kClear_m + grip.reach * (planned_m - kClear_m);
   out.press = grip.firmness * (from.press + s * (to.press - from.press));
   const double angle = std::max(to.wall, 0) * kPi / 2.0;
   out.towards = std::cos(angle) * channel_.medial + std::sin(angle) * channel_.superior;

@@ -33,7 +33,7 @@ struct Intent {
 struct Grip {
   double bend_m = 0.0;    ///< δ of a whole press
   double firmness = 1.0;  ///< share of it, 0 … 1
-  /// Of the plan's depth, from the mouth; less than 1 while the hand goes out and in again.
+  /// Of the plan's depth, from 25 mm before the mouth; less than 1 while it goes out and in again.
   double reach = 1.0;
 };
 

@@ -41,10 +41,10 @@ constexpr double kPress_N = 0.30;
 constexpr double kBendRate_m_per_s = 0.02;
 constexpr double kFirstBend_m = 0.010, kMostBend_m = 0.030;
 // A wall that held and holds no more for a moment let the tip through: the hand eases off, goes out
-// to the mouth and in again, and presses less from then on; so it does, once in a stroke, where
+// of the bone and in again, and presses less from then on; so it does, once in a stroke, where
 // nothing held from the beginning.
 constexpr double kHeld_N = 0.15, kLoose_N = 0.06, kLoose_s = 0.04;
-constexpr double kEase_s = 0.15, kWayOut_s = 0.8, kLess = 0.8, kLeastMost_m = 0.010;
+constexpr double kEase_s = 0.15, kWayOut_s = 1.0, kLess = 0.8, kLeastMost_m = 0.010;
 
 Vec3 clamped(const Vec3& v, double most) {
   const double length = v.norm();
@@ -168,7 +168,7 @@ class SimLambda6 final : public Device, public SimulatedTrainee {
     slipped_s_ = 0.0, held_m_.reset(), lost_stroke_ = stroke;
   }
 
-  /// After a slip: eases off, out to the mouth and in again, presses anew. The plan goes on.
+  /// After a slip: eases off, out of the bone and in again, presses anew. The plan goes on.
   void come_back(double gap_s) noexcept {
     if (slipped_s_ < 0.0) return;
     slipped_s_ += gap_s;
