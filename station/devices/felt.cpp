@@ -113,10 +113,12 @@ double FeltWalls::likeness_at(const std::array<Felt, kPlaces>& wall, int place) 
     if (std::abs(away_m) < kHole_m) hole += felt.push_N, ++in_hole;
     if (std::abs(away_m) > kBeside_m) beside += felt.push_N, ++at_side;
   }
-  const double through_N = through ? kThrough_N : 0.0;
-  if (std::min(within[0], within[1]) < kLeastFelt) return through ? through_N : kNever;
-  const double gives = in_hole > 0 && at_side > 2 ? beside / at_side - hole / in_hole : 0.0;
-  return std::min(caught[0] / within[0], caught[1] / within[1]) + kGivesWeight * gives + through_N;
+  double like = kNever;
+  if (std::min(within[0], within[1]) >= kLeastFelt) {
+    const double gives = in_hole > 0 && at_side > 2 ? beside / at_side - hole / in_hole : 0.0;
+    like = std::min(caught[0] / within[0], caught[1] / within[1]) + kGivesWeight * gives;
+  }
+  return through ? kThrough_N + std::max(0.0, like) : like;
 }
 
 // Depth from which places count.
