@@ -24,6 +24,9 @@ struct KnownTract {
   math::Vec3 superior = math::Vec3::UnitZ();  ///< unit vector, perpendicular to both
   double length_m = 0.04;
   double radius_m = 0.0025;
+  /// Depth from which bone was seen all round in the planning images: what is felt nearer to the
+  /// mouth is its rim, and no wall.
+  double enclosed_from_m = 0.0;
 };
 
 /// What a device does about its zero, which it loses while it is switched off.
@@ -35,13 +38,23 @@ enum class Homing : std::uint8_t {
 /// What the hand holds.
 enum class Tool : std::uint8_t { probe, burr };
 
-/// Options of a device: the first five of a simulated one, the last two of a machine.
+/// What a simulated hand feels and how steady it is. Defaults from people.
+struct HandSense {
+  double force_threshold_N = 0.030;  ///< the smallest force that is felt, 29 to 34 mN [King2010]
+  double force_weber = 0.07;         ///< JND of force, share of it [Pang1991]
+  /// Standard deviation of a slow wander along each axis: 285 µm in three, of surgeons whose
+  /// instrument goes through an entry [Wells2013].
+  double wander_m = 0.000165;
+};
+
+/// Options of a device: the first six of a simulated one, the last two of a machine.
 struct DeviceOptions {
   std::uint64_t seed = 1;        ///< of everything random in a simulated device
   double duration_s = 30.0;      ///< of a simulated hand's plan
   double probe_length_m = 0.13;  ///< handle's origin to tip
   KnownTract channel = {};
   Tool tool = Tool::probe;         ///< with a burr a simulated hand makes the channel
+  HandSense sense = {};            ///< of a simulated hand
   std::filesystem::path sdk = {};  ///< the vendor's library or folder; empty: where it installs
   Homing homing = Homing::refuse;
 };

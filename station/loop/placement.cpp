@@ -1,5 +1,7 @@
 #include "station/loop/placement.hpp"
 
+#include <algorithm>
+
 namespace tractus::loop {
 
 math::Pose place_device(const volume::Tract& tract, double probe_length_m,
@@ -20,6 +22,22 @@ volume::Tract tract_in_device(const volume::Tract& tract_V, const math::Pose& X_
   out.medial = X_DV.q * tract_V.medial;
   out.superior = X_DV.q * tract_V.superior;
   return out;
+}
+
+double enclosed_from_m(const volume::Volume& volume, const volume::TransferFunction& transfer,
+                       const volume::Tract& tract) {
+  constexpr double kDeepest_m = 0.020, kStep_m = 0.001, kOuter_m = 0.012;
+  const volume::WallFinder finder(volume, transfer);
+  const auto walled = [&](double at_m) {
+    return std::ranges::all_of(volume::kWalls, [&](volume::Wall wall) {
+      if (wall == volume::Wall::anterior) return true;
+      const auto found = finder.wall_at(tract, wall, at_m);
+      return found && found->outer_m <= kOuter_m;
+    });
+  };
+  for (double at_m = 0.0; at_m <= std::min(kDeepest_m, tract.length_m); at_m += kStep_m)
+    if (walled(at_m)) return at_m;
+  return 0.0;
 }
 
 }  // namespace tractus::loop

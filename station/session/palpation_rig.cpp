@@ -23,13 +23,14 @@ core::Json probe_of(const laws::PalpationParameters& base) {
           {"pose_offset_m", array_of(base.pose_offset_m)}};
 }
 
-devices::KnownTract channel_of(const volume::Tract& in_D) {
+devices::KnownTract channel_of(const volume::Tract& in_D, double enclosed_from_m) {
   return {.entry_m = in_D.entry_m,
           .axis = in_D.axis,
           .medial = in_D.medial,
           .superior = in_D.superior,
           .length_m = in_D.length_m,
-          .radius_m = in_D.radius_m};
+          .radius_m = in_D.radius_m,
+          .enclosed_from_m = enclosed_from_m};
 }
 
 /// Of the tip along the tract's axis.
@@ -97,13 +98,17 @@ core::Result<void> PalpationRig::take_tool() {
 core::Result<void> PalpationRig::open_device() {
   const auto& base = prepared_.model.base;
   const auto& tract = prepared_.opened.definition.tract;
-  auto device = TRY(
-      info_.make({.seed = setup_.seed,
-                  .duration_s = setup_.duration_s,
-                  .probe_length_m = base.length_m,
-                  .channel = channel_of(loop::tract_in_device(tract, X_VD_, base.pose_offset_m)),
-                  .tool = setup_.burr ? devices::Tool::burr : devices::Tool::probe,
-                  .sdk = setup_.sdk}));
+  const double enclosed_from_m =
+      info_.simulated ? loop::enclosed_from_m(prepared_.volume, prepared_.model.transfer, tract)
+                      : 0.0;
+  auto device =
+      TRY(info_.make({.seed = setup_.seed,
+                      .duration_s = setup_.duration_s,
+                      .probe_length_m = base.length_m,
+                      .channel = channel_of(loop::tract_in_device(tract, X_VD_, base.pose_offset_m),
+                                            enclosed_from_m),
+                      .tool = setup_.burr ? devices::Tool::burr : devices::Tool::probe,
+                      .sdk = setup_.sdk}));
   made_ = std::move(device);
   auto limits = TRY(made_.device->open());
   loop::HandLimits device_limits = loop::HandLimits::kCeiling;

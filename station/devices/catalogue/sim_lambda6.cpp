@@ -6,6 +6,7 @@
 #include <atomic>
 #include <cmath>
 #include <numbers>
+#include <optional>
 
 #include "station/devices/catalogue.hpp"
 #include "station/devices/felt.hpp"
@@ -34,10 +35,16 @@ constexpr double kHand_Ns_per_m = 14.0;
 constexpr double kHand_Nm_per_rad = 4.0;
 constexpr double kHand_Nms_per_rad = 0.04;
 
-// It follows a surface with a light touch: leans less where it feels more than this, more where
-// less.
-constexpr double kTouch_N = 0.05;
-constexpr double kEase_per_s = 1.5;
+// It bends the probe until the wall pushes back with the least force of the surgeons' means, 0.3 to
+// 0.5 N in the simulator [Zoller2020, Table 2]; little by little, so that a hole is felt.
+constexpr double kPress_N = 0.30;
+constexpr double kBendRate_m_per_s = 0.02;
+constexpr double kFirstBend_m = 0.010, kMostBend_m = 0.030;
+// A wall that held and holds no more for a moment let the tip through: the hand eases off, goes out
+// of the bone and in again, and presses less from then on; so it does, once in a stroke, where
+// nothing held from the beginning.
+constexpr double kHeld_N = 0.15, kLoose_N = 0.06, kLoose_s = 0.04;
+constexpr double kEase_s = 0.15, kWayOut_s = 1.0, kLess = 0.8, kLeastMost_m = 0.010;
 
 Vec3 clamped(const Vec3& v, double most) {
   const double length = v.norm();
@@ -52,13 +59,18 @@ Vec3 rotation_vector(const Quat& q) {
 
 class SimLambda6 final : public Device, public SimulatedTrainee {
  public:
-  explicit SimLambda6(const DeviceOptions& options) : options_(options), plan_(options) {}
+  explicit SimLambda6(const DeviceOptions& options)
+      : options_(options), plan_(options), felt_(options) {}
 
   core::Result<Limits> open() override {
-    X_DH_ = plan_.at(0.0, lean_).X_DH;
+    grip_ = {.bend_m = kFirstBend_m};
+    intent_ = plan_.at(0.0, grip_);
+    X_DH_ = intent_.X_DH;
     velocity_.setZero(), turn_.setZero(), wrench_ = {};
-    elapsed_s_ = 0.0, lean_ = 1.0, last_ = -1, felt_ = {}, button_ = false, done_ = false,
-    progress_ = 0.0;
+    elapsed_s_ = 0.0, last_ = -1, felt_ = FeltWalls(options_);
+    rechecking_ = tapping_ = false, done_ = false, progress_ = 0.0;
+    most_bend_m_ = kMostBend_m, loose_s_ = 0.0, slipped_s_ = -1.0, lost_stroke_ = -1,
+    held_m_.reset();
     open_ = true;
     return kLimits;
   }
@@ -72,7 +84,7 @@ class SimLambda6 final : public Device, public SimulatedTrainee {
            .velocity_m_s = velocity_,
            .angular_velocity_rad_s = turn_,
            .saturated = saturated_,
-           .buttons = button_ ? 1u : 0u};
+           .buttons = intent_.button ? 1u : 0u};
     return Status::ok;
   }
 
@@ -95,36 +107,39 @@ class SimLambda6 final : public Device, public SimulatedTrainee {
   }
   bool done() const noexcept override { return done_; }
   double progress() const noexcept override { return progress_; }
-  SimulatedAnswer answer() const override { return felt_.answer(options_.seed); }
+  SimulatedAnswer answer() const override { return felt_.answer(); }
 
  private:
   void advance(double gap_s) noexcept {
     const int steps = static_cast<int>(std::ceil(gap_s / kMaxStep_s - 1e-9));
     if (steps <= 0) return;
-    const double h = gap_s / steps;
-    Intent intent;
-    for (int i = 0; i < steps; ++i) {
-      elapsed_s_ += h;
-      intent = plan_.at(elapsed_s_, lean_);
-      integrate(intent, h);
+    elapsed_s_ += gap_s;
+    if (!rechecking_ && elapsed_s_ >= plan_.rechecks_from_s()) {
+      plan_.recheck(felt_.suspects());
+      rechecking_ = true;
     }
-    button_ = intent.button;
-    feel(intent);
-    ease(intent, gap_s);
+    const Intent before = intent_;
+    come_back(gap_s);
+    intent_ = plan_.at(elapsed_s_, grip_);
+    if (slipped_s_ >= 0.0) intent_.act = Act::approach;
+    const Vec3 velocity = (intent_.X_DH.p - before.X_DH.p) / gap_s;
+    for (int i = 0; i < steps; ++i) integrate(velocity, gap_s / steps);
+    feel();
+    press(gap_s);
     progress_ = std::min(1.0, elapsed_s_ / plan_.duration_s());
     done_ = elapsed_s_ >= plan_.duration_s();
   }
 
   // Semi-implicit Euler, the dampers implicit: v⁺ = (v + h (f + b v*) / m) / (1 + h b / m), then x⁺
   // = x + h v⁺.
-  void integrate(const Intent& intent, double h) noexcept {
-    const Vec3 pull = kHand_N_per_m * (intent.X_DH.p - X_DH_.p) +
-                      kHand_Ns_per_m * intent.velocity_m_s + wrench_.force_N;
+  void integrate(const Vec3& intended_m_s, double h) noexcept {
+    const Vec3 pull = kHand_N_per_m * (intent_.X_DH.p - X_DH_.p) + kHand_Ns_per_m * intended_m_s +
+                      wrench_.force_N;
     velocity_ = (velocity_ + h / kMass_kg * pull) /
                 (1.0 + h / kMass_kg * (kHand_Ns_per_m + kFriction_Ns_per_m));
     X_DH_.p += h * velocity_;
-    const Vec3 twist =
-        kHand_Nm_per_rad * rotation_vector(intent.X_DH.q * X_DH_.q.conjugate()) + wrench_.torque_Nm;
+    const Vec3 twist = kHand_Nm_per_rad * rotation_vector(intent_.X_DH.q * X_DH_.q.conjugate()) +
+                       wrench_.torque_Nm;
     turn_ = (turn_ + h / kInertia_kgm2 * twist) /
             (1.0 + h / kInertia_kgm2 * (kHand_Nms_per_rad + kFriction_Nms_per_rad));
     const double angle = h * turn_.norm();
@@ -132,36 +147,70 @@ class SimLambda6 final : public Device, public SimulatedTrainee {
       X_DH_.q = (Quat(Eigen::AngleAxisd(angle, turn_.normalized())) * X_DH_.q).normalized();
   }
 
-  void ease(const Intent& intent, double gap_s) noexcept {
-    const double felt_N = -wrench_.force_N.dot(intent.press);
-    const double want = std::clamp(1.0 - felt_N / kTouch_N, -3.0, 1.0);
-    lean_ = std::clamp(lean_ + gap_s * kEase_per_s * want, 0.0, 1.0);
-  }
-
-  void feel(const Intent& intent) noexcept {
-    const KnownTract& channel = options_.channel;
-    const Vec3 tip = X_DH_ * Vec3(0.0, 0.0, options_.probe_length_m) - channel.entry_m;
-    const double depth_m = tip.dot(channel.axis);
-    if (intent.act == Act::tap) {
-      felt_.note(intent, 0.0, depth_m - channel.length_m, -wrench_.force_N.dot(channel.axis));
+  void press(double gap_s) noexcept {
+    if (intent_.press < 0.5) {
+      held_m_.reset();
       return;
     }
-    const double share =
-        (depth_m - plan_.shallowest_m()) / (plan_.deepest_m() - plan_.shallowest_m());
-    felt_.note(intent, share, tip.dot(intent.press) - channel.radius_m,
-               -wrench_.force_N.dot(intent.press));
+    const double felt_N = -wrench_.force_N.dot(intent_.towards);
+    if (intent_.act == Act::stroke) heed_slip(felt_N, gap_s);
+    const double want = std::clamp(1.0 - felt_N / kPress_N, -1.0, 1.0);
+    grip_.bend_m = std::clamp(grip_.bend_m + gap_s * kBendRate_m_per_s * want, 0.0, most_bend_m_);
+  }
+
+  void heed_slip(double felt_N, double gap_s) noexcept {
+    if (felt_N > kHeld_N) held_m_ = felt_depth_m();
+    loose_s_ = felt_N < kLoose_N ? loose_s_ + gap_s : 0.0;
+    const int stroke = intent_.wall * PalpationPlan::kLooks + intent_.look;
+    if (slipped_s_ >= 0.0 || loose_s_ < kLoose_s || (!held_m_ && stroke == lost_stroke_)) return;
+    if (held_m_) felt_.note_through(intent_, *held_m_);
+    most_bend_m_ = std::max(kLess * grip_.bend_m, kLeastMost_m);
+    slipped_s_ = 0.0, held_m_.reset(), lost_stroke_ = stroke;
+  }
+
+  /// After a slip: eases off, out of the bone and in again, presses anew. The plan goes on.
+  void come_back(double gap_s) noexcept {
+    if (slipped_s_ < 0.0) return;
+    slipped_s_ += gap_s;
+    const double back_s = slipped_s_ - kEase_s - kWayOut_s;
+    grip_.firmness =
+        back_s < 0.0 ? std::max(0.0, 1.0 - slipped_s_ / kEase_s) : std::min(1.0, back_s / kEase_s);
+    const double way = std::clamp((slipped_s_ - kEase_s) / kWayOut_s, 0.0, 1.0);
+    grip_.reach = 0.5 * (1.0 + std::cos(2.0 * std::numbers::pi * way));
+    grip_.bend_m = std::min(grip_.bend_m, most_bend_m_);
+    if (back_s > kEase_s) slipped_s_ = -1.0;
+  }
+
+  /// Of the tip, by where its own hand is, not where it meant it to be.
+  double felt_depth_m() const noexcept {
+    return intent_.depth_m + (X_DH_.p - intent_.X_DH.p).dot(options_.channel.axis);
+  }
+
+  void feel() noexcept {
+    const Vec3& axis = options_.channel.axis;
+    const double outward_N = -wrench_.force_N.dot(axis);
+    if (intent_.act == Act::tap) felt_.note_tap(outward_N);
+    if (tapping_ && intent_.act != Act::tap) felt_.end_tap();
+    tapping_ = intent_.act == Act::tap;
+    if (intent_.act != Act::stroke) return;
+    felt_.note_stroke(intent_, felt_depth_m(), -wrench_.force_N.dot(intent_.towards), outward_N);
   }
 
   DeviceOptions options_;
   PalpationPlan plan_;
-  FeltResistance felt_;
+  FeltWalls felt_;
+  Intent intent_;  ///< of the last tick
   math::Pose X_DH_;
   Vec3 velocity_ = Vec3::Zero(), turn_ = Vec3::Zero();
   math::Wrench wrench_;
   double elapsed_s_ = 0.0;
-  double lean_ = 1.0;  ///< share of the plan's tilt
+  Grip grip_;
+  double most_bend_m_ = kMostBend_m, loose_s_ = 0.0;
+  int lost_stroke_ = -1;               ///< in which nothing held
+  double slipped_s_ = -1.0;            ///< since the last slip; negative: it is over
+  std::optional<double> held_m_ = {};  ///< depth at which the wall last held
   core::Instant_ns last_ = -1;
-  bool open_ = false, saturated_ = false, button_ = false;
+  bool open_ = false, saturated_ = false, tapping_ = false, rechecking_ = false;
   std::atomic<bool> done_ = false;
   std::atomic<double> progress_ = 0.0;
 };
