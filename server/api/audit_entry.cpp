@@ -14,11 +14,13 @@ constexpr std::size_t kMaxDetail_bytes = 4096;
 
 /// The fields of bodies that are kept as they came, sorted. None of them may ever hold a secret:
 /// what a new route calls otherwise is not kept until it is named here.
-constexpr std::array<std::string_view, 71> kKept{"account",
+constexpr std::array<std::string_view, 74> kKept{"account",
+                                                 "accounts",
                                                  "add",
                                                  "against",
                                                  "all",
                                                  "assignment",
+                                                 "assignments",
                                                  "at_m",
                                                  "at_s",
                                                  "at_utc_us",
@@ -48,6 +50,7 @@ constexpr std::array<std::string_view, 71> kKept{"account",
                                                  "measurements",
                                                  "model",
                                                  "name",
+                                                 "new_passwords",
                                                  "note",
                                                  "on_invalid",
                                                  "ordering",

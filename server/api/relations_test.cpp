@@ -115,6 +115,23 @@ class Relations : public PeopleTest {
            {{"csv", "name\nx"}, {"cohort", "$"}},
            "c-tom",
            "c-tia"}}},
+        {"changeAccounts",
+         {{"/accounts/*/id",
+           "/accounts/change",
+           {{"accounts", {{{"id", "$"}}}}, {"level", "x"}},
+           "tom",
+           "tia"},
+          {"/cohort",
+           "/accounts/change",
+           {{"accounts", {{{"id", "tom"}}}}, {"cohort", "$"}},
+           "c-tom",
+           "c-tia"}}},
+        {"releaseManyResults",
+         {{"/assignments/*",
+           "/assignment-releases",
+           {{"assignments", {"$"}}, {"release", "released"}},
+           "a-tom",
+           "a-tia"}}},
         {"referenceWay",
          {{"reference",
            "/trials/" + trial_of("tom") + "/references/$",
@@ -131,6 +148,7 @@ class Relations : public PeopleTest {
          {{Object::person, "tom"},
           {Object::account, "tom"},
           {Object::cohort, "c-tom"},
+          {Object::assignment, "a-tom"},
           {Object::study, "through"},
           {Object::invitation, "c-inv"}}},
         {Role::trainee, {{Object::assignment, "a-tom"}, {Object::invitation, "c-inv"}}}};
@@ -200,7 +218,7 @@ TEST_F(Relations, EveryCellOfRoutesTimesRolesTimesEndsIsAsThePolicySays) {
     }
   }
   std::printf("cells of relation routes x ends x roles x {own, stranger's}: %d\n", cells);
-  EXPECT_EQ(cells, 21 * 7 * 2);
+  EXPECT_EQ(cells, 24 * 7 * 2);
 }
 
 /// A route that is new and changes something names the other ends of what it brings together, or is

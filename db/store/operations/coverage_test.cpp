@@ -17,8 +17,9 @@ namespace {
 constexpr const char* kRows[] = {
     "insert into objects (sha256, size_bytes, made_utc_us) values ('o', 1, 1)",
     "insert into accounts (id, name, role, password_hash, made_utc_us, state, pseudonym, badge, "
-    "pin_hash, totp_secret, totp_confirmed, must_change) values ('a', 'tom', 'trainee', 'h', 1, "
-    "'active', 'p', '4711', 'pin', 'secret', 1, 0)",
+    "pin_hash, totp_secret, totp_confirmed, must_change, level) values ('a', 'tom', 'trainee', "
+    "'h', 1, "
+    "'active', 'p', '4711', 'pin', 'secret', 1, 0, 'PGY-2')",
     "insert into oidc_subjects (issuer, subject, account_id, linked_utc_us, linked_by) values "
     "('i', 's', 'a', 1, 'ada')",
     "insert into stations (id, name, token_hash, enrolled_utc_us, revoked_utc_us) values ('s', "

@@ -9,7 +9,7 @@ const std::vector<CoveredTable>& covered_tables() {
       {"accounts",
        {"id"},
        {"name", "role", "password_hash", "made_utc_us", "state", "pseudonym", "badge", "pin_hash",
-        "totp_secret", "totp_confirmed", "must_change"}},
+        "totp_secret", "totp_confirmed", "must_change", "level"}},
       {"oidc_subjects", {"issuer", "subject"}, {"account_id", "linked_utc_us", "linked_by"}},
       {"stations", {"id"}, {"name", "token_hash", "enrolled_utc_us", "revoked_utc_us"}},
       {"cohorts", {"id"}, {"name", "made_utc_us", "made_by"}},
