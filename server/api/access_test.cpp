@@ -174,6 +174,7 @@ TEST_F(Access, ATraineeAndAStationReachTheseRoutesAlone) {
                                                          "trialForceDepth of own",
                                                          "casePreview of own",
                                                          "cohorts of own",
+                                                         "curriculaOfAccount of own",
                                                          "assignments of own",
                                                          "assignment of own",
                                                          "trainee of own",

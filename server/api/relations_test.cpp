@@ -75,6 +75,7 @@ class Relations : public PeopleTest {
     };
     Json protocol = assignment("protocol", "$");
     protocol.erase("cases");
+    const std::string bound = "/criteria/bound?metric=path_length&side=at_most&method=youden&";
     return {
         {"putIntoCohort", {{"/name", "/cohorts/c-tom/people", name, "tom", "tia"}}},
         {"takeFromCohort", {{"account_id", "/cohorts/c-tom/people/$", {}, "tom", "tia"}}},
@@ -132,6 +133,26 @@ class Relations : public PeopleTest {
            {{"assignments", {"$"}}, {"release", "released"}},
            "a-tom",
            "a-tia"}}},
+        {"addCriteria",
+         {{"/case", "/criteria", {{"case", "$"}, {"criteria", "none"}}, kCase, kCase},
+          {"/assignment",
+           "/criteria",
+           {{"assignment", "$"}, {"criteria", "none"}},
+           "a-tom",
+           "a-tia"}}},
+        {"expertBound",
+         {{"experts", bound + "experts=$", {}, "c-tom", "c-tia"},
+          {"novices", bound + "experts=c-tom&novices=$", {}, "c-tom", "c-tia"}}},
+        {"addCurriculum",
+         {{"/steps/*/cases/*/case",
+           "/curricula",
+           {{"title", "x"}, {"steps", {{{"cases", {{{"case", "$"}}}}}}}},
+           kCase,
+           kCase}}},
+        {"giveCurriculum",
+         {{"/cohort", "/curricula/none/cohorts", {{"cohort", "$"}}, "c-tom", "c-tia"}}},
+        {"repeatCurriculumStep",
+         {{"account_id", "/curricula/none/people/$/again", {{"step", "a"}}, "tom", "tia"}}},
         {"referenceWay",
          {{"reference",
            "/trials/" + trial_of("tom") + "/references/$",
@@ -218,7 +239,7 @@ TEST_F(Relations, EveryCellOfRoutesTimesRolesTimesEndsIsAsThePolicySays) {
     }
   }
   std::printf("cells of relation routes x ends x roles x {own, stranger's}: %d\n", cells);
-  EXPECT_EQ(cells, 24 * 7 * 2);
+  EXPECT_EQ(cells, 31 * 7 * 2);
 }
 
 /// A route that is new and changes something names the other ends of what it brings together, or is

@@ -61,6 +61,13 @@ constexpr const char* kRows[] = {
     "'duration', 0, 3.5, 'n')",
     "insert into trial_metrics (trial_id, metric_id, position, value, note) values ('t', 'force', "
     "1, 0.1, 'n')",
+    "insert into criteria (kind, subject, version, definition, reason, made_utc_us, made_by) "
+    "values "
+    "('case', 'k', 1, '{}', 'why', 1, 'ada')",
+    "insert into curricula (id, version, title, definition, reason, made_utc_us, made_by) values "
+    "('q', 1, 'year 1', '{}', 'why', 1, 'ada')",
+    "insert into curriculum_steps (study_id, curriculum_id, version, step_id) values ('y', 'q', 1, "
+    "'s1')",
     "insert into analysis_plans (id, title, study, plan, data_seen, trials_then, made_utc_us, "
     "made_by) values ('n', 'plan', 'y', 'o', 0, 0, 1, 'ada')"};
 

@@ -47,6 +47,11 @@ const std::vector<CoveredTable>& covered_tables() {
         "received_utc_us", "duration_s", "samples", "complete", "late_ticks", "not_converged",
         "skipped_ticks", "header", "events", "state", "failure", "correct", "coverage"}},
       {"trial_metrics", {"trial_id"}, {"metric_id", "position", "value", "note"}},
+      {"criteria",
+       {"kind", "subject", "version"},
+       {"definition", "reason", "made_utc_us", "made_by"}},
+      {"curricula", {"id", "version"}, {"title", "definition", "reason", "made_utc_us", "made_by"}},
+      {"curriculum_steps", {"study_id"}, {"curriculum_id", "version", "step_id"}},
       {"analysis_plans",
        {"id"},
        {"title", "study", "plan", "data_seen", "trials_then", "made_utc_us", "made_by"}}};

@@ -24,3 +24,5 @@ export type { Slice, SlicePlane, Vec3 } from './slices';
 export * from './oidc-queries';
 export * from './class-queries';
 export * from './sign-in-card';
+export * from './criteria-queries';
+export type * from './criteria-schemas';
