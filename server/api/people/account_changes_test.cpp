@@ -16,7 +16,8 @@ class AccountChanges : public PeopleTest {
     return json(answer);
   }
   Json account(const std::string& id) {
-    for (const Json& one : json(get("ann", "/accounts"))["accounts"])
+    const Json list = json(get("ann", "/accounts"))["accounts"];
+    for (const Json& one : list)
       if (one["id"] == id) return one;
     return {};
   }
@@ -44,7 +45,9 @@ TEST_F(AccountChanges, SetsABadgeAndAPinOfEachAndKeepsWhatIsNotNamed) {
 }
 
 TEST_F(AccountChanges, GivesFirstPasswordsWhichMustBeChanged) {
-  for (const Json& one : change({{"accounts", both()}, {"new_passwords", true}})["accounts"]) {
+  const Json made = change({{"accounts", both()}, {"new_passwords", true}})["accounts"];
+  ASSERT_EQ(made.size(), 2u);
+  for (const Json& one : made) {
     const auto in = sign_in_as(one["account"]["name"], one["password"]);
     EXPECT_EQ(in.status, 200) << text(in);
     EXPECT_EQ(json(in)["must_change"], true);

@@ -230,6 +230,10 @@ Result<http::Response> step_again(const Call& call) {
     const auto of = TRY(version_of_call(tx, call, person.version));
     const auto account = TRY(store::account_of(tx, person.account_id));
     store::Assignment assignment = step_assignment(call, of, *step);
+    const auto first = TRY(store::find_assignment(
+        tx, person.steps[std::size_t(step - person.curriculum.steps.begin())].study_ids.front()));
+    const auto before = TRY(store::assignment_of(tx, first));
+    assignment.release = before.release;
     assignment.study.title += " (again)";
     const store::AuditStamp stamp{call.caller.name, call.backend.now_utc_us()};
     TRY(hand_out(tx, assignment, of, *step, {*account}, stamp));
