@@ -87,6 +87,11 @@ def utc_us(days_ago, hour=9, minute=0):
     return int(day.replace(hour=hour, minute=minute, second=0, microsecond=0).timestamp() * 1e6)
 
 
+def soon_us():
+    """The server takes no due time in the past: what was due long ago is due in a minute, and overdue from then on."""
+    return int((datetime.datetime.now(datetime.timezone.utc) + datetime.timedelta(minutes=1)).timestamp() * 1e6)
+
+
 def started(days_ago, hour):
     return datetime.datetime.fromtimestamp(utc_us(days_ago, hour) / 1e6, datetime.timezone.utc).strftime("%Y-%m-%dT%H:%MZ")
 
@@ -192,7 +197,7 @@ class Programme:
         cases = {"probing": SCENARIOS, "palpation": self.case_ids, "drilling": self.whole_ids}[rig]
         self.faculty.ask("POST", "/assignments", {
             "title": title, "cases": cases, "cohort": self.cohorts[cohort], "ordering": "random", "repeats": repeats,
-            "seed": SEED + due_days_ago % 1000, "due_utc_us": utc_us(due_days_ago, 18), "release": "at_once"})
+            "seed": SEED + due_days_ago % 1000, "due_utc_us": max(utc_us(due_days_ago, 18), soon_us()), "release": "at_once"})
         return len(cases) * repeats
 
     def year_of(self, cohort, station):

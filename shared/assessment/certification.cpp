@@ -1,6 +1,7 @@
 #include "assessment/certification.hpp"
 
 #include <algorithm>
+#include <map>
 
 namespace tractus {
 namespace assessment {
@@ -45,6 +46,16 @@ Certification certification(const statistics::Rates& rates, double risk, double 
       statistics::lc_cusum_characteristic(rates, out.threshold, rates.inadequate, kMostTrials)
           .signalled_by;
   return out;
+}
+
+const Certification& usual_certification(const statistics::Rates& rates) {
+  constexpr std::size_t kMostKept = 64;  // a programme has a handful
+  thread_local std::map<std::pair<double, double>, Certification> kept;
+  const std::pair key{rates.adequate, rates.inadequate};
+  if (kept.size() >= kMostKept && !kept.contains(key)) kept.clear();
+  const auto found = kept.find(key);
+  if (found != kept.end()) return found->second;
+  return kept.emplace(key, certification(rates)).first->second;
 }
 
 }  // namespace assessment

@@ -23,4 +23,7 @@ struct Certification {
 Certification certification(const statistics::Rates& rates, double risk = 0.05,
                             double power = 0.80);
 
+/// The same with the usual risk and power, computed once in each thread.
+const Certification& usual_certification(const statistics::Rates& rates);
+
 }  // namespace tractus::assessment

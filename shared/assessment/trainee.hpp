@@ -65,11 +65,31 @@ struct Standing {
 Standing standing(const std::vector<Attempt>& attempts, const statistics::Rates& rates,
                   double threshold, double relapse);
 
+/// What a trainee did of one scenario.
+struct Tally {
+  double trials = 0.0, right = 0.0;
+  std::size_t last = 0;  ///< trial, from 1; 0: never done
+};
+/// How high the failure rate may be: the 90 % point of Beta(½ + failures, ½ + successes).
+double may_fail(const Tally& of);
+/// The next best scenario: the one whose failure rate may be highest, of equals the least recently
+/// done. @param of  not empty.
+std::size_t next_of(const std::vector<Tally>& of);
+
 struct TraineeRules {
   statistics::Rates rates;
   std::optional<double> threshold;  ///< of the LC-CUSUM; the certification's own if absent
   double relapse = 1.25;
 };
+
+/// Whether competence may be said, and why or why not.
+struct Competence {
+  bool certified = false;
+  std::string why;
+};
+/// @param threshold  the h that `of` was made with.
+Competence competence(const Standing& of, std::size_t trials, double threshold,
+                      const Certification& rule);
 
 /// `report` ("tractus-trainee/1"): trainee, trials, right, share, state, certified, why, scenarios,
 /// scores, next. `figures`: the sums; each score with its curve.

@@ -17,11 +17,6 @@ namespace {
 using core::Json;
 using statistics::Vector;
 
-struct Tally {
-  double trials = 0.0, right = 0.0;
-  std::size_t last = 0;  // trial, from 1
-};
-
 std::vector<Tally> tallies(const Cohort& cohort, const std::vector<Attempt>& attempts) {
   std::vector<Tally> out(cohort.scenarios.size());
   for (std::size_t t = 0; t < attempts.size(); ++t) {
@@ -31,11 +26,6 @@ std::vector<Tally> tallies(const Cohort& cohort, const std::vector<Attempt>& att
     own.last = t + 1;
   }
   return out;
-}
-
-/// How high the failure rate may be: the 90 % point of Beta(½ + failures, ½ + successes).
-double may_fail(const Tally& of) {
-  return statistics::beta_quantile(0.9, 0.5 + of.trials - of.right, 0.5 + of.right);
 }
 
 /// What an interval says against the rates of adequate and inadequate performance.
@@ -69,11 +59,7 @@ Json scenario_table(const Cohort& cohort, const std::vector<Tally>& of,
 }
 
 Json next_case(const Cohort& cohort, const std::vector<Tally>& of) {
-  std::size_t best = 0;
-  for (std::size_t s = 1; s < of.size(); ++s) {
-    const double here = may_fail(of[s]), there = may_fail(of[best]);
-    if (here > there + 1e-12 || (here > there - 1e-12 && of[s].last < of[best].last)) best = s;
-  }
+  const std::size_t best = next_of(of);
   return {{"scenario", cohort.scenarios[best]},
           {"why",
            fmt::format("{:.0f} of {:.0f} right so far: the failure rate may be as high as {:.0f} % "
@@ -183,9 +169,23 @@ std::string too_few(std::size_t trials, const Certification& rule) {
       100.0 * rule.rates.inadequate, 100.0 * risk_within(shown, 1.25, rule), shown);
 }
 
-/// Whether competence may be said, and why (not).
-std::pair<bool, std::string> certified(const Standing& of, std::size_t trials, double threshold,
-                                       const Certification& rule) {
+}  // namespace
+
+double may_fail(const Tally& of) {
+  return statistics::beta_quantile(0.9, 0.5 + of.trials - of.right, 0.5 + of.right);
+}
+
+std::size_t next_of(const std::vector<Tally>& of) {
+  std::size_t best = 0;
+  for (std::size_t s = 1; s < of.size(); ++s) {
+    const double here = may_fail(of[s]), there = may_fail(of[best]);
+    if (here > there + 1e-12 || (here > there - 1e-12 && of[s].last < of[best].last)) best = s;
+  }
+  return best;
+}
+
+Competence competence(const Standing& of, std::size_t trials, double threshold,
+                      const Certification& rule) {
   if (rule.trials == 0)
     return {false,
             fmt::format("no number of trials up to 400 tells failure rates of {:.0f} % and {:.0f} "
@@ -212,8 +212,6 @@ std::pair<bool, std::string> certified(const Standing& of, std::size_t trials, d
   return {true, fmt::format("signal at trial {}{}; {}", of.signalled_at, recovered, chance)};
 }
 
-}  // namespace
-
 TraineeReport trainee_report(const Cohort& cohort, std::size_t trainee, const Certification& rule,
                              const TraineeRules& rules) {
   const auto& attempts = cohort.attempts[trainee];
@@ -224,7 +222,7 @@ TraineeReport trainee_report(const Cohort& cohort, std::size_t trainee, const Ce
   for (const auto& own : counts) right += own.right;
   const auto trials = static_cast<double>(attempts.size());
   const auto share = statistics::wilson({right, trials});
-  const auto [sure, why] = certified(of, attempts.size(), threshold, rule);
+  const auto [sure, why] = competence(of, attempts.size(), threshold, rule);
   TraineeReport out;
   out.report = {{"format", "tractus-trainee/1"},
                 {"trainee", cohort.trainees[trainee]},

@@ -17,8 +17,9 @@ namespace {
 constexpr const char* kRows[] = {
     "insert into objects (sha256, size_bytes, made_utc_us) values ('o', 1, 1)",
     "insert into accounts (id, name, role, password_hash, made_utc_us, state, pseudonym, badge, "
-    "pin_hash, totp_secret, totp_confirmed, must_change) values ('a', 'tom', 'trainee', 'h', 1, "
-    "'active', 'p', '4711', 'pin', 'secret', 1, 0)",
+    "pin_hash, totp_secret, totp_confirmed, must_change, level) values ('a', 'tom', 'trainee', "
+    "'h', 1, "
+    "'active', 'p', '4711', 'pin', 'secret', 1, 0, 'PGY-2')",
     "insert into oidc_subjects (issuer, subject, account_id, linked_utc_us, linked_by) values "
     "('i', 's', 'a', 1, 'ada')",
     "insert into stations (id, name, token_hash, enrolled_utc_us, revoked_utc_us) values ('s', "
@@ -60,6 +61,13 @@ constexpr const char* kRows[] = {
     "'duration', 0, 3.5, 'n')",
     "insert into trial_metrics (trial_id, metric_id, position, value, note) values ('t', 'force', "
     "1, 0.1, 'n')",
+    "insert into criteria (kind, subject, version, definition, reason, made_utc_us, made_by) "
+    "values "
+    "('case', 'k', 1, '{}', 'why', 1, 'ada')",
+    "insert into curricula (id, version, title, definition, reason, made_utc_us, made_by) values "
+    "('q', 1, 'year 1', '{}', 'why', 1, 'ada')",
+    "insert into curriculum_steps (study_id, curriculum_id, version, step_id) values ('y', 'q', 1, "
+    "'s1')",
     "insert into analysis_plans (id, title, study, plan, data_seen, trials_then, made_utc_us, "
     "made_by) values ('n', 'plan', 'y', 'o', 0, 0, 1, 'ada')"};
 

@@ -15,8 +15,8 @@ core::Result<void> run(Writing& tx, std::string_view sql, std::initializer_list<
 constexpr const char* kAccount =
     "a.id, a.name, a.role, a.password_hash, a.state, coalesce(a.pseudonym, ''), "
     "coalesce(a.badge, ''), coalesce(a.pin_hash, ''), coalesce(a.totp_secret, ''), "
-    "a.totp_confirmed, a.totp_step, a.must_change, a.made_utc_us";
-constexpr std::size_t kAccountColumns = 13;
+    "a.totp_confirmed, a.totp_step, a.must_change, a.made_utc_us, a.level";
+constexpr std::size_t kAccountColumns = 14;
 
 /// Columns of kAccount.
 core::Result<Account> account_from(const Row& row) {
@@ -34,7 +34,8 @@ core::Result<Account> account_from(const Row& row) {
                  .totp_confirmed = row.truth(9),
                  .totp_step = row.integer(10),
                  .must_change = row.truth(11),
-                 .made_utc_us = row.integer(12)};
+                 .made_utc_us = row.integer(12),
+                 .level = row.text(13)};
 }
 
 /// Columns of kAccount and two times.
@@ -63,13 +64,13 @@ core::Result<std::string> station_text(Reading& tx, const std::string& column,
 }  // namespace
 
 core::Result<void> add_account(Writing& tx, const Account& account, std::int64_t now_utc_us) {
-  auto done =
-      run(tx,
-          "insert into accounts (id, name, role, password_hash, made_utc_us, state, "
-          "pseudonym, badge, pin_hash, must_change) values (?, ?, ?, ?, ?, ?, ?, ?, ?, ?)",
-          {account.id, account.name, name_value(account.role), account.password_hash, now_utc_us,
-           name_value(account.state), text_or_null(account.pseudonym), text_or_null(account.badge),
-           text_or_null(account.pin_hash), bool_value(account.must_change)});
+  auto done = run(
+      tx,
+      "insert into accounts (id, name, role, password_hash, made_utc_us, state, "
+      "pseudonym, badge, pin_hash, must_change, level) values (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)",
+      {account.id, account.name, name_value(account.role), account.password_hash, now_utc_us,
+       name_value(account.state), text_or_null(account.pseudonym), text_or_null(account.badge),
+       text_or_null(account.pin_hash), bool_value(account.must_change), account.level});
   if (!done && done.error().code == core::Errc::conflict)
     return core::Error{core::Errc::conflict, "an account named " + account.name +
                                                  ", or one with this badge, exists already"};
@@ -80,11 +81,11 @@ core::Result<void> set_account(Writing& tx, const Account& account) {
   auto done = run(tx,
                   "update accounts set role = ?, password_hash = ?, state = ?, badge = ?, "
                   "pin_hash = ?, totp_secret = ?, totp_confirmed = ?, totp_step = ?, "
-                  "must_change = ? where id = ?",
+                  "must_change = ?, level = ? where id = ?",
                   {name_value(account.role), account.password_hash, name_value(account.state),
                    text_or_null(account.badge), text_or_null(account.pin_hash),
                    text_or_null(account.totp_secret), bool_value(account.totp_confirmed),
-                   account.totp_step, bool_value(account.must_change), account.id});
+                   account.totp_step, bool_value(account.must_change), account.level, account.id});
   if (!done && done.error().code == core::Errc::conflict)
     return core::Error{core::Errc::conflict, "badge: another account already has this badge"};
   return done;

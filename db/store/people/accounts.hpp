@@ -31,6 +31,7 @@ struct Account {
   std::int64_t totp_step = 0;  ///< time step of the last used code, so that no code is valid twice
   bool must_change = false;    ///< another person set the password: the owner must change it first
   std::int64_t made_utc_us = 0;  ///< filled on reading
+  std::string level = {};        ///< of training, in the programme's words: "PGY-2"
 };
 
 struct Session {

@@ -24,7 +24,7 @@ using core::Result;
 
 constexpr std::uint64_t kMaxImport_bytes = 1u << 18;
 constexpr std::size_t kMaxRows = 200, kMaxCsv_bytes = 1u << 17;
-constexpr std::array<std::string_view, 4> kColumns{"name", "role", "badge", "pin"};
+constexpr std::array<std::string_view, 5> kColumns{"name", "role", "level", "badge", "pin"};
 
 struct ImportRow {
   std::size_t line = 0;
@@ -34,7 +34,7 @@ struct ImportRow {
 };
 
 struct Import {
-  std::string csv, cohort;
+  std::string csv, cohort, level;
   bool apply = false;
 };
 
@@ -44,6 +44,7 @@ Result<Import> import_from(const std::string& body) {
   Import out;
   out.csv = fields.text("csv", kMaxCsv_bytes);
   out.cohort = fields.text_or("cohort", "", 64);
+  out.level = level_field(fields);
   const Json* apply = fields.member("apply", false);
   if (apply && !apply->is_boolean()) fields.wrong("apply", "true or false is expected");
   out.apply = apply && apply->is_boolean() && apply->get<bool>();
@@ -58,7 +59,7 @@ Result<std::map<std::string, std::size_t>> columns_in(const std::vector<std::str
     const std::string column(header[i]);
     if (std::ranges::find(kColumns, column) == kColumns.end())
       return core::bad_input("line 1: the column '" + column.substr(0, 40) +
-                             "' is not known; name, role, badge and pin are");
+                             "' is not known; name, role, level, badge and pin are");
     if (!out.emplace(column, i).second)
       return core::bad_input("line 1: the column '" + column + "' stands there twice");
   }
@@ -80,6 +81,7 @@ ImportRow row_from(std::size_t line, const std::map<std::string, std::string>& c
     fields.wrong("name", "a name is expected");
   out.account.role = fields.word<Role>("role");
   if (out.account.role == Role::station) fields.wrong("role", "a station is no person's role");
+  out.account.level = level_field(fields);
   out.account.badge = badge_field(fields);
   out.pin = pin_field(fields);
   if (const auto read = fields.done(); !read) out.error = read.error().what;
@@ -165,7 +167,9 @@ Json rows_json(const std::vector<ImportRow>& rows, bool applied) {
   for (const ImportRow& row : rows)
     out.push_back({{"line", row.line},
                    {"name", row.account.name},
+                   {"id", row.account.id.empty() ? Json() : Json(row.account.id)},
                    {"role", name(row.account.role)},
+                   {"level", row.account.level},
                    {"badge", row.account.badge.empty() ? Json() : Json(row.account.badge)},
                    {"has_pin", !row.pin.empty()},
                    {"error", row.error.empty() ? Json() : Json(row.error)},
@@ -176,6 +180,8 @@ Json rows_json(const std::vector<ImportRow>& rows, bool applied) {
 Result<http::Response> import_accounts(const Call& call) {
   const auto asked = TRY(import_from(call.request.body));
   auto rows = TRY(rows_of(asked.csv));
+  for (ImportRow& row : rows)
+    if (row.account.level.empty()) row.account.level = asked.level;
   if (!asked.cohort.empty()) mark_outside_cohorts(rows);
   TRY(call.backend.store.read([&](store::Reading& tx) { return mark_taken(tx, rows); }));
   const bool faultless =
@@ -194,14 +200,17 @@ std::vector<NamedSchema> import_schemas() {
   return {
       {"AccountsImport",
        object({{"csv", text("CSV with a header line; columns: name, and optionally role (default "
-                            "trainee), badge and pin; at most 200 rows")},
+                            "trainee), level, badge and pin; at most 200 rows")},
                {"cohort", optional(text("Id of a cohort that all accounts join"))},
+               {"level", optional(text("Level of training of the rows that name none"))},
                {"apply", optional(truth("True: creates the accounts, all or none; false (default): "
                                         "only checks the rows"))}})},
       {"ImportedAccount",
        object({{"line", integer("1", "Number of the line of the CSV, counted from 1")},
                {"name", text("Name of the account; empty if the row cannot be read")},
+               {"id", nullable(text("Id of the account; null if no account was created"))},
                {"role", text("Role of the account")},
+               {"level", text("Level of training; empty if there is none")},
                {"badge", nullable(text("Text of the badge; null if there is none"))},
                {"has_pin", truth("True if the row has a PIN")},
                {"error", nullable(text("Reason why no account can be created from the row; null "

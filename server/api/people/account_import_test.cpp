@@ -50,6 +50,23 @@ TEST_F(AccountImport, MakesAllAccountsInTheCohortAndEachCanSignIn) {
   EXPECT_EQ(json(get("fay", "/assignments/a-tom"))["people"], 3);
 }
 
+TEST_F(AccountImport, TakesTheLevelOfTraining) {
+  const Json made = import("level,name\nPGY-2,Ida\n", true, "c-tom", 201)["rows"][0];
+  EXPECT_EQ(made["level"], "PGY-2");
+  const Json list = json(get("ann", "/accounts"))["accounts"];
+  const auto ida =
+      std::ranges::find(list, Json("Ida"), [](const Json& one) { return one["name"]; });
+  ASSERT_NE(ida, list.end());
+  EXPECT_EQ((*ida)["level"], "PGY-2");
+  EXPECT_EQ((*ida)["id"], made["id"]);
+  const auto levels = store_.read([](store::Reading& tx) {
+    return tx.query(
+        "select level from study_participants where study_id = 'a-tom' and level <> ''");
+  });
+  ASSERT_EQ(levels->size(), 1u) << "the cohort's assignment has taken it";
+  EXPECT_EQ(levels->front().text(0), "PGY-2");
+}
+
 TEST_F(AccountImport, OneFaultyRowKeepsAllOthersOut) {
   const std::size_t before = accounts();
   const Json shown = import("name,pin\nIda,1234\nUlf,12\n", true);
@@ -76,7 +93,7 @@ TEST_F(AccountImport, SaysOfEachRowWhatIsWrong) {
 
 TEST_F(AccountImport, RefusesAListThatIsNone) {
   for (const char* csv :
-       {"", "name\n", "badge\nB1\n", "name,level\nIda,1\n", "name,name\na,b\n", "name\n\"Ida\n"})
+       {"", "name\n", "badge\nB1\n", "name,colour\nIda,1\n", "name,name\na,b\n", "name\n\"Ida\n"})
     import(csv, true, "", 400);
   EXPECT_EQ(post("ann", "/accounts/import", {{"csv", "name\nIda"}, {"apply", "yes"}}).status, 400);
   EXPECT_EQ(post("dora", "/accounts/import", {{"csv", "name\nIda"}}).status, 403);

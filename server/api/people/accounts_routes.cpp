@@ -1,9 +1,5 @@
 /// Accounts: made, switched off, given a role, a badge, a new password. By administrators; badge
 /// and PIN of their trainees by those who teach them.
-#include <fmt/format.h>
-
-#include <algorithm>
-
 #include "core/bytes.hpp"
 #include "core/try.hpp"
 #include "server/api/backend.hpp"
@@ -56,6 +52,7 @@ Result<Wanted> wanted(const core::Json& json, const std::string& where) {
   out.password = password_field(fields, "password", false);
   out.account.badge = badge_field(fields);
   out.pin = pin_field(fields);
+  out.account.level = level_field(fields);
   TRY(fields.done());
   out.made = out.password.empty();
   if (out.made) out.password = made_password();
@@ -96,19 +93,6 @@ Result<http::Response> changed(const Call& call, Work work) {
   }));
   close_conversations(call.backend, account.id);
   return json_response(account_json(account));
-}
-
-/// Refuses a change that would leave no active administrator.
-Result<void> check_an_admin_stays(store::Reading& tx, const store::Account& changing) {
-  auto all = TRY(store::all_accounts(tx));
-  const bool stays = std::ranges::any_of(all, [&](const store::Account& other) {
-    return other.id != changing.id && other.role == Role::admin &&
-           other.state == AccountState::active;
-  });
-  if (stays) return {};
-  return Error{
-      Errc::conflict,
-      "this is the last active administrator: make another account an administrator first"};
 }
 
 Result<http::Response> set_state(const Call& call) {
@@ -215,7 +199,8 @@ std::vector<RouteInfo> accounts_routes() {
                {"password", optional(text("Initial password, 12 to 1024 bytes; if it is missing, "
                                           "the server generates a password"))},
                {"badge", optional(text("Text of the badge that a station's reader reads"))},
-               {"pin", optional(text("PIN for signing in at stations, 4 to 12 digits"))}})},
+               {"pin", optional(text("PIN for signing in at stations, 4 to 12 digits"))},
+               {"level", optional(text("Level of training, at most 64 bytes"))}})},
       {"NewAccountMade",
        object({{"account", ref("Account")},
                {"password", nullable(text("Generated password, shown only in this answer; null if "

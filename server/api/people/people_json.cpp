@@ -33,6 +33,7 @@ core::Json account_json(const store::Account& account) {
           {"has_pin", !account.pin_hash.empty()},
           {"has_codes", account.totp_confirmed},
           {"must_change", account.must_change},
+          {"level", account.level},
           {"made_utc_us", account.made_utc_us}};
 }
 
@@ -54,6 +55,7 @@ core::Json account_schema() {
        {"has_codes", truth("True if signing in requires a one-time code")},
        {"must_change",
         truth("True if the person must choose a new password before any other request")},
+       {"level", text("Level of training, in the programme's own words; empty if there is none")},
        {"made_utc_us", integer("us", "Time of creation, in microseconds since 1970-01-01 UTC")}});
 }
 
@@ -85,6 +87,20 @@ core::Result<store::Account> account_of_call(store::Reading& tx, const Call& cal
   if (!account)
     return core::Error{core::Errc::not_found, "no account " + call.text("id").substr(0, 32)};
   return std::move(*account);
+}
+
+std::string level_field(core::Fields& fields) { return fields.text_or("level", "", 64); }
+
+core::Result<void> check_an_admin_stays(store::Reading& tx, const store::Account& changing) {
+  auto all = TRY(store::all_accounts(tx));
+  const bool stays = std::ranges::any_of(all, [&](const store::Account& other) {
+    return other.id != changing.id && other.role == Role::admin &&
+           other.state == store::AccountState::active;
+  });
+  if (stays) return {};
+  return core::Error{
+      core::Errc::conflict,
+      "this is the last active administrator: make another account an administrator first"};
 }
 
 std::string made_password() { return letters(16); }

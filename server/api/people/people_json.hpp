@@ -20,9 +20,14 @@ core::Json account_schema();
 std::string password_field(core::Fields& fields, const char* key, bool needed);
 std::string pin_field(core::Fields& fields);
 std::string badge_field(core::Fields& fields);
+/// Level of training, at most 64 bytes; empty if there is none.
+std::string level_field(core::Fields& fields);
 
 /// The account of the path's id. Errors: not_found.
 core::Result<store::Account> account_of_call(store::Reading& tx, const Call& call);
+
+/// Refuses a change of this account that would leave no active administrator. Errors: conflict.
+core::Result<void> check_an_admin_stays(store::Reading& tx, const store::Account& changing);
 
 /// A random password of 16 characters: 80 bits, without letters that look alike.
 std::string made_password();

@@ -9,6 +9,7 @@
 #include "server/api/people/people_json.hpp"
 #include "server/api/people/throttle.hpp"
 #include "server/api/schema.hpp"
+#include "server/api/studies/passing.hpp"
 #include "server/api/trials/uploads.hpp"
 #include "server/jobs/scenario_facts.hpp"
 #include "study/sealed_law.hpp"
@@ -122,6 +123,8 @@ Result<wire::AssignedTrial> trial_of_slot(store::Reading& tx, const store::Assig
 Result<void> take_of(store::Writing& tx, const Call& call, const store::Assignment& assignment,
                      const store::Account& account, Given& given) {
   if (assignment.study.state == store::StudyState::paused) return {};
+  const auto offered = TRY(may_be_handed_out(tx, account.id, assignment.study.id));
+  if (!offered) return {};
   auto id = TRY(store::find_assignment(tx, assignment.study.id));
   auto participant = TRY(store::participant_for(tx, id, account.id));
   auto person = TRY(store::participant_of(tx, id, participant));

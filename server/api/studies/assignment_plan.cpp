@@ -42,23 +42,6 @@ Result<AssignedCase> case_from(const Json& json, const std::string& where) {
   return out;
 }
 
-Result<std::vector<AssignedCase>> cases_from(const Json* json) {
-  std::vector<AssignedCase> out;
-  if (!json) return out;
-  if (!json->is_array() || json->empty() || json->size() > kMaxCases)
-    return Error{Errc::bad_input,
-                 fmt::format("/cases: an array of 1 to {} is expected", kMaxCases)};
-  std::set<std::string> ids;
-  for (const Json& one : *json) {
-    const std::string where = fmt::format("/cases/{}", out.size());
-    auto read = TRY(case_from(one, where));
-    if (!ids.insert(read.case_id).second)
-      return Error{Errc::bad_input, where + ": this case occurs twice; use repeats instead"};
-    out.push_back(std::move(read));
-  }
-  return out;
-}
-
 Result<std::vector<std::string>> names_from(const Json* json) {
   std::vector<std::string> out;
   if (!json) return out;
@@ -69,7 +52,7 @@ Result<std::vector<std::string>> names_from(const Json* json) {
   return out;
 }
 
-store::Assignment assignment_from(core::Fields& fields) {
+store::Assignment assignment_from(core::Fields& fields, std::int64_t now_utc_us) {
   store::Assignment out;
   out.study.id = "a-" + core::new_id().substr(0, 24);
   out.study.title = fields.text("title", kMaxPlanTitle);
@@ -79,8 +62,7 @@ store::Assignment assignment_from(core::Fields& fields) {
   long drawn = 0;
   for (const std::byte b : core::random_bytes(4)) drawn = drawn * 256 + std::to_integer<long>(b);
   out.study.seed = fields.integer_or("seed", drawn, 0, kMaxAssignedSeed);
-  if (fields.has("due_utc_us"))
-    out.due_utc_us = fields.integer("due_utc_us", 0, kMaxAssignedTime_us);
+  if (fields.has("due_utc_us")) out.due_utc_us = due_field(fields, now_utc_us);
   out.release = fields.word_or("release", store::Release::held);
   if (fields.has("cohort")) out.cohort_id = fields.text("cohort", 64);
   return out;
@@ -113,28 +95,6 @@ Result<std::vector<store::Account>> people_meant(store::Reading& tx, const Assig
   return out;
 }
 
-/// The cases' ids; scenarios that come with the plan are noted as cases.
-Result<std::vector<std::string>> note_cases(store::Writing& tx, const AssignmentPlan& plan,
-                                            const std::vector<store::CasePart>& parts,
-                                            const store::AuditStamp& stamp) {
-  std::vector<std::string> out;
-  std::size_t part = 0;
-  for (const AssignedCase& one : plan.cases) {
-    if (one.scenario) {
-      const store::CaseSummary summary{
-          one.case_id, one.scenario->name, one.scenario->origin.who, stamp.at_utc_us,
-          0,           trial::Rig::probing};
-      TRY(store::add_case(tx, summary, {parts[part++]}, stamp.at_utc_us));
-    } else {
-      auto known = TRY(store::case_of(tx, one.case_id));
-      if (!known) return nothing_named("/cases", one.case_id);
-      if (known->retired) return Error{Errc::conflict, "/cases: " + known->title + " is retired"};
-    }
-    out.push_back(one.case_id);
-  }
-  return out;
-}
-
 /// Scenarios, order and repeats of the study that is the protocol.
 Result<std::vector<std::string>> protocol_cases(store::Reading& tx, const std::string& protocol,
                                                 store::Assignment& into) {
@@ -154,7 +114,7 @@ Result<void> make(store::Writing& tx, const Call& call, const AssignmentPlan& pl
   const store::AuditStamp stamp{call.caller.name, call.backend.now_utc_us()};
   store::Assignment assignment = plan.assignment;
   assignment.made_by_id = call.caller.id;
-  auto cases = TRY(plan.protocol.empty() ? note_cases(tx, plan, parts, stamp)
+  auto cases = TRY(plan.protocol.empty() ? note_cases(tx, plan.cases, parts, stamp)
                                          : protocol_cases(tx, plan.protocol, assignment));
   auto people = TRY(people_meant(tx, plan));
   auto id = TRY(store::add_assignment(tx, assignment, cases, stamp));
@@ -166,30 +126,82 @@ Result<void> make(store::Writing& tx, const Call& call, const AssignmentPlan& pl
 
 }  // namespace
 
-Result<AssignmentPlan> AssignmentPlan::from_json(const Json& json) {
+std::int64_t due_field(core::Fields& fields, std::int64_t now_utc_us) {
+  const std::int64_t due = fields.integer("due_utc_us", 0, kMaxAssignedTime_us);
+  if (due < now_utc_us) fields.wrong("due_utc_us", "this time is in the past: choose a later one");
+  return due;
+}
+
+Result<std::vector<AssignedCase>> assigned_cases_from(const Json& json) {
+  std::vector<AssignedCase> out;
+  if (!json.is_array() || json.empty() || json.size() > kMaxCases)
+    return Error{Errc::bad_input,
+                 fmt::format("/cases: an array of 1 to {} is expected", kMaxCases)};
+  std::set<std::string> ids;
+  for (const Json& one : json) {
+    const std::string where = fmt::format("/cases/{}", out.size());
+    auto read = TRY(case_from(one, where));
+    if (!ids.insert(read.case_id).second)
+      return Error{Errc::bad_input, where + ": this case occurs twice; use repeats instead"};
+    out.push_back(std::move(read));
+  }
+  return out;
+}
+
+Result<std::vector<std::string>> note_cases(store::Writing& tx,
+                                            const std::vector<AssignedCase>& cases,
+                                            const std::vector<store::CasePart>& parts,
+                                            const store::AuditStamp& stamp) {
+  std::vector<std::string> out;
+  std::size_t part = 0;
+  for (const AssignedCase& one : cases) {
+    if (one.scenario) {
+      const store::CaseSummary summary{
+          one.case_id, one.scenario->name, one.scenario->origin.who, stamp.at_utc_us,
+          0,           trial::Rig::probing};
+      TRY(store::add_case(tx, summary, {parts[part++]}, stamp.at_utc_us));
+    } else {
+      auto known = TRY(store::case_of(tx, one.case_id));
+      if (!known) return nothing_named("/cases", one.case_id);
+      if (known->retired) return Error{Errc::conflict, "/cases: " + known->title + " is retired"};
+    }
+    out.push_back(one.case_id);
+  }
+  return out;
+}
+
+Result<std::vector<store::CasePart>> put_scenarios(Backend& backend,
+                                                   const std::vector<AssignedCase>& cases) {
+  std::vector<store::CasePart> out;
+  for (const AssignedCase& one : cases) {
+    if (!one.scenario) continue;
+    auto part = TRY(put_scenario(backend, *one.scenario));
+    out.push_back(std::move(part));
+  }
+  return out;
+}
+
+Result<AssignmentPlan> AssignmentPlan::from_json(const Json& json, std::int64_t now_utc_us) {
   core::Fields fields(json, "");
   AssignmentPlan out;
-  out.assignment = assignment_from(fields);
+  out.assignment = assignment_from(fields, now_utc_us);
   out.protocol = fields.text_or("protocol", "", 32);
   const Json* cases = fields.member("cases", false);
   const Json* people = fields.member("people", false);
   if (out.protocol.empty() == (cases == nullptr))
     fields.wrong("cases", "either cases or a protocol is expected");
   TRY(fields.done());
-  auto read = TRY(cases_from(cases));
-  out.cases = std::move(read);
+  if (cases) {
+    auto read = TRY(assigned_cases_from(*cases));
+    out.cases = std::move(read);
+  }
   auto names = TRY(names_from(people));
   out.people = std::move(names);
   return out;
 }
 
 Result<std::string> make_assignment(const Call& call, const AssignmentPlan& plan) {
-  std::vector<store::CasePart> parts;
-  for (const AssignedCase& one : plan.cases) {
-    if (!one.scenario) continue;
-    auto part = TRY(put_scenario(call.backend, *one.scenario));
-    parts.push_back(std::move(part));
-  }
+  const auto parts = TRY(put_scenarios(call.backend, plan.cases));
   TRY(call.backend.store.write([&](store::Writing& tx) { return make(tx, call, plan, parts); }));
   return plan.assignment.study.id;
 }
@@ -205,7 +217,7 @@ Result<void> assign_to(store::Writing& tx, const store::AssignmentId& id,
       account.pseudonym.empty() ? "P" + account.id.substr(0, 24) : account.pseudonym;
   if (std::ranges::find(there, participant, &store::Participant::name) != there.end())
     return Error{Errc::conflict, account.name + ": the assignment already includes this person"};
-  TRY(store::add_participant(tx, id, {.name = participant},
+  TRY(store::add_participant(tx, id, {.name = participant, .level = account.level},
                              order_for(study, scenarios, int(there.size())), stamp));
   return store::add_assigned_person(tx, id, account.id, participant);
 }

@@ -1,4 +1,8 @@
 /// Assignments: what trainees are to do, until when, and when they may see how they did.
+#include <fmt/format.h>
+
+#include <algorithm>
+
 #include "core/try.hpp"
 #include "db/store/studies/assignments.hpp"
 #include "db/store/trials/debriefs.hpp"
@@ -18,7 +22,7 @@ using core::Result;
 using store::Release;
 
 constexpr std::uint64_t kMaxAssignmentPlan_bytes = 4u << 20, kMaxAssignment_bytes = 4096;
-constexpr long kMaxTime_us = 9'000'000'000'000'000;
+constexpr std::size_t kMaxReleased = 200;
 
 /// The answer to a trainee contains neither the order of the cases nor data of other trainees.
 Json assignment_json(const store::Assignment& a, Scope of) {
@@ -120,7 +124,7 @@ Result<http::Response> one_assignment(const Call& call) {
 
 Result<http::Response> add_assignment_route(const Call& call) {
   auto json = TRY(core::parse_json(call.request.body, "body"));
-  auto plan = TRY(AssignmentPlan::from_json(json));
+  auto plan = TRY(AssignmentPlan::from_json(json, call.backend.now_utc_us()));
   auto id = TRY(make_assignment(call, plan));
   return assignment_response(call, id, 201);
 }
@@ -148,13 +152,35 @@ Result<http::Response> set_release(const Call& call) {
       });
 }
 
+/// All or none. Access to each was checked (access.hpp).
+Result<http::Response> release_many(const Call& call) {
+  auto json = TRY(core::parse_json(call.request.body, "body"));
+  core::Fields fields(json, "body");
+  const auto release = fields.word<Release>("release");
+  const Json* ids = fields.member("assignments");
+  const bool fits = ids && ids->is_array() && !ids->empty() && ids->size() <= kMaxReleased &&
+                    std::ranges::all_of(*ids, [](const Json& one) { return one.is_string(); });
+  if (ids && !fits)
+    fields.wrong("assignments", fmt::format("an array of 1 to {} ids is expected", kMaxReleased));
+  TRY(fields.done());
+  TRY(call.backend.store.write([&](store::Writing& tx) -> Result<void> {
+    const store::AuditStamp stamp{call.caller.name, call.backend.now_utc_us()};
+    for (const Json& one : *ids) {
+      const auto id = TRY(store::find_assignment(tx, one.get<std::string>()));
+      TRY(store::set_release(tx, id, release, stamp));
+    }
+    return {};
+  }));
+  return list_assignments(call);
+}
+
 Result<http::Response> set_due(const Call& call) {
   std::optional<std::int64_t> due;
   return changed(
       call,
       [&](core::Fields& fields) {
         const Json* given = fields.member("due_utc_us");
-        if (given && !given->is_null()) due = fields.integer("due_utc_us", 0, kMaxTime_us);
+        if (given && !given->is_null()) due = due_field(fields, call.backend.now_utc_us());
       },
       [&](store::Writing& tx, const store::AssignmentId& id, const store::AuditStamp& stamp) {
         return store::set_due(tx, id, due, stamp);
@@ -328,8 +354,8 @@ std::vector<NamedSchema> assignment_schemas() {
              optional(integer(
                  "1", "Seed of the random orders; if it is missing, the server draws one"))},
             {"due_utc_us", optional(integer("us",
-                                            "Due time, in microseconds since 1970-01-01 UTC; if it "
-                                            "is missing, there is none"))},
+                                            "Due time, in microseconds since 1970-01-01 UTC, not "
+                                            "in the past; if it is missing, there is none"))},
             {"release", optional(one_of<Release>(
                             "When trainees see their results: held (default) = not yet, released "
                             "= now, at_once = as soon as a trial is uploaded"))},
@@ -348,6 +374,23 @@ RouteInfo adding_route() {
               {"/cases/*/case", Object::published_case, {Role::admin, Role::faculty}},
               {"/protocol", Object::study, out.who}};
   out.schemas = assignment_schemas();
+  return out;
+}
+
+RouteInfo releasing_route() {
+  using namespace schema;
+  RouteInfo out = assignment_route("POST", "", "releaseManyResults",
+                                   "Set when trainees see their results of many assignments, all "
+                                   "or none",
+                                   "Releases", release_many);
+  out.path = "/api/v1/assignment-releases";
+  out.body_limit_bytes = 16384;
+  out.answer = "Assignments";
+  out.ends = {{"/assignments/*", Object::assignment, out.who}};
+  out.schemas = {
+      {"Releases",
+       object({{"assignments", array(text("Id of an assignment"), "Assignments, at most 200")},
+               {"release", one_of<Release>("When trainees see their results")}})}};
   return out;
 }
 
@@ -404,7 +447,7 @@ std::vector<RouteInfo> assignments_routes() {
   free.ends = {{"account_id", Object::account, {Role::admin, Role::faculty}}};
   free.schemas = {
       {"Nothing", object({{"reason", optional(text("Reason; the server does not store it"))}})}};
-  return {list, one, adding_route(), release, due, person, invalid, free};
+  return {list, one, adding_route(), release, releasing_route(), due, person, invalid, free};
 }
 
 }  // namespace api

@@ -138,11 +138,40 @@ TEST_F(Assignments, WholeBoneIsToBeDrilledAndThenItsChannelFelt) {
 
 TEST_F(Assignments, TheEarliestDueComesFirst) {
   assigned(two_cases({{"title", "no date"}}));
-  assigned(two_cases({{"title", "later"}, {"due_utc_us", 2'000}}));
-  assigned(two_cases({{"title", "soon"}, {"due_utc_us", 1'000}}));
+  assigned(two_cases({{"title", "later"}, {"due_utc_us", now_ + 2'000}}));
+  assigned(two_cases({{"title", "soon"}, {"due_utc_us", now_ + 1'000}}));
   const core::Json given = next(ticket());
   EXPECT_EQ(given["trial"]["assignment"], "soon");
   EXPECT_EQ(given["left"], 6);
+}
+
+TEST_F(Assignments, RefusesADueTimeInThePast) {
+  const auto made =
+      post("fay", "/assignments", two_cases({{"title", "x"}, {"due_utc_us", now_ - 1}}));
+  EXPECT_EQ(made.status, 400);
+  EXPECT_NE(text(made).find("in the past"), std::string::npos) << text(made);
+  const std::string id = assigned(two_cases({{"title", "x"}}));
+  const std::string due = "/assignments/" + id + "/due";
+  EXPECT_EQ(post("fay", due, {{"due_utc_us", now_ - 1}}).status, 400);
+  EXPECT_EQ(post("fay", due, {{"due_utc_us", now_ + 1}}).status, 200);
+}
+
+TEST_F(Assignments, ReleasesManyAtOnceOrNone) {
+  const std::string one = assigned(two_cases({{"title", "1"}})),
+                    two = assigned(two_cases({{"title", "2"}}));
+  const auto states = [&] {
+    return json(get("fay", "/assignments/" + one))["release"].get<std::string>() + " " +
+           json(get("fay", "/assignments/" + two))["release"].get<std::string>();
+  };
+  const auto release = [&](const core::Json& ids) {
+    return post("fay", "/assignment-releases", {{"assignments", ids}, {"release", "released"}})
+        .status;
+  };
+  EXPECT_EQ(release({one, "a-tia"}), 404);
+  EXPECT_EQ(states(), "held held");
+  EXPECT_EQ(release({one, two}), 200);
+  EXPECT_EQ(states(), "released released");
+  EXPECT_EQ(release(core::Json::array()), 400);
 }
 
 TEST_F(Assignments, TheSameSeedGivesTheSameOrders) {
@@ -151,7 +180,7 @@ TEST_F(Assignments, TheSameSeedGivesTheSameOrders) {
                                                {"ordering", "random"},
                                                {"repeats", 8},
                                                {"seed", seed},
-                                               {"due_utc_us", 1000 + seed}}));
+                                               {"due_utc_us", now_ + 1000 + seed}}));
     const auto all = store_.read([&](store::Reading& tx) {
       return tx.query("select case_id from study_slots where study_id = ? order by position", {id});
     });

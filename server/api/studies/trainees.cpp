@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/try.hpp"
+#include "db/store/cases/cases.hpp"
 #include "metrics/metric.hpp"
 #include "server/api/trials/trial_json.hpp"
 #include "statistics/distributions/proportions.hpp"
@@ -18,7 +19,7 @@ using core::Result;
 using Trials = std::vector<store::CohortTrial>;
 
 constexpr std::int64_t kMaxTrials = 20'000;
-constexpr double kAdequate = 0.10, kInadequate = 0.25;
+constexpr double kRelapseThreshold = 1.25;
 /// Edges of stated confidence: "about half sure" to "certain".
 constexpr std::array kConfidence{0.0, 0.55, 0.65, 0.75, 0.85, 0.95, 1.0};
 
@@ -90,19 +91,74 @@ std::vector<std::string> followed_metrics(const Trials& trials) {
   return out;
 }
 
-Json rule_json(const Programme& of) {
-  return {{"adequate", of.rules.rates.adequate},
-          {"inadequate", of.rules.rates.inadequate},
-          {"trials", of.rule.trials},
-          {"threshold", of.rules.threshold.value_or(of.rule.threshold)},
-          {"relapse", of.rules.relapse}};
+/// What passing is for one trainee, or for those who begin now.
+struct TraineeRule {
+  const assessment::Criteria& criteria;
+  std::size_t version;  ///< from 1; 0: the usual one
+  const assessment::Certification& certification;
+  assessment::TraineeRules rules;
+};
+
+TraineeRule rule_for(const Programme& of, std::optional<std::int64_t> began_utc_us) {
+  const auto& criteria = of.criteria.for_start(began_utc_us);
+  statistics::Rates rates;
+  for (const auto& one : criteria.requirements)
+    if (one.kind == assessment::RequirementKind::lc_cusum) rates = one.rates;
+  return {criteria,
+          of.criteria.number_for(began_utc_us),
+          assessment::usual_certification(rates),
+          {rates, std::nullopt, kRelapseThreshold}};
 }
 
-Json short_json(const Programme& of, std::size_t trainee, const Json& report) {
+TraineeRule rule_of(const Programme& of, std::size_t trainee) {
+  return rule_for(of, of.trials[trainee].front().summary.started_utc_us);
+}
+
+Json rule_json(const TraineeRule& of) {
+  Json requirements = Json::array();
+  for (const auto& one : of.criteria.requirements) requirements.push_back(assessment::text_of(one));
+  return {{"adequate", of.rules.rates.adequate},
+          {"inadequate", of.rules.rates.inadequate},
+          {"trials", of.certification.trials},
+          {"threshold", of.rules.threshold.value_or(of.certification.threshold)},
+          {"relapse", of.rules.relapse},
+          {"version", of.version},
+          {"requirements", requirements}};
+}
+
+/// What keeps somebody from being certified; what carries it for one who is.
+std::string reasons_in(const assessment::Verdict& of) {
+  std::string out;
+  for (const auto& one : of.now) {
+    if (!of.holds_now() && one.met) continue;
+    if (!out.empty()) out += "; ";
+    out += of.now.size() == 1 ? one.found : one.required + ": " + one.found;
+  }
+  return out;
+}
+
+assessment::Verdict verdict_of(const Programme& of, std::size_t trainee, const TraineeRule& rule) {
+  std::vector<assessment::JudgedTrial> trials;
+  for (const auto& trial : of.trials[trainee]) trials.push_back(judged_trial(trial));
+  return assessment::judge(rule.criteria, trials);
+}
+
+Json next_json(const Programme& of, const Json& report) {
+  const auto at = of.next.find(report["trainee"].get<std::string>());
+  if (at == of.next.end()) return report["next"];
+  return {{"scenario", at->second.case_title}, {"why", at->second.why}};
+}
+
+Json short_json(const Programme& of, std::size_t trainee, const TraineeRule& rule,
+                const Json& report) {
   Json out = Json::object();
-  for (const char* key : {"trainee", "trials", "right", "share", "wilson_low", "wilson_high",
-                          "state", "certified", "why", "next"})
+  for (const char* key :
+       {"trainee", "trials", "right", "share", "wilson_low", "wilson_high", "state"})
     out[key] = report[key];
+  const auto verdict = verdict_of(of, trainee, rule);
+  out["certified"] = verdict.holds_now();
+  out["why"] = reasons_in(verdict);
+  out["next"] = next_json(of, report);
   out["simulated"] =
       std::ranges::any_of(of.trials[trainee], [](const auto& t) { return t.summary.simulated; });
   out["last_utc_us"] = of.trials[trainee].back().summary.started_utc_us;
@@ -171,18 +227,33 @@ Json calibration_json(const std::vector<assessment::Attempt>& attempts,
   return out;
 }
 
+/// What the curricula want next of those who are in one; for a trainee, of the caller alone.
+Result<std::map<std::string, CurriculumNext>> curriculum_next(store::Reading& tx,
+                                                              const Call& call) {
+  std::map<std::string, CurriculumNext> out;
+  const auto people = TRY(people_in_curricula(tx, call.of == Scope::own ? call.caller.id : "", ""));
+  for (const CurriculumPerson& person : people) {
+    if (!person.progress.next_step) continue;
+    const auto of = TRY(store::case_of(tx, person.progress.next_case));
+    const auto& step = person.curriculum.steps[*person.progress.next_step];
+    out[person.name] = {of ? of->title : person.progress.next_case,
+                        "the step '" + step.name + "' of the curriculum '" + person.title +
+                            "' is open; of its cases this one may fail most"};
+  }
+  return out;
+}
+
 }  // namespace
 
 Result<Programme> programme_of(const Call& call) {
   auto trials = TRY(trials_for(call));
   std::erase_if(trials, [](const auto& trial) { return !counts(trial); });
-  const auto rates = TRY(statistics::Rates::make(kAdequate, kInadequate));
-  static const assessment::Certification rule = assessment::certification(rates);
-  Programme out{.cohort = {},
-                .trials = {},
-                .rule = rule,
-                .rules = {rates, std::nullopt},
-                .backend = &call.backend};
+  Programme out{.cohort = {}, .trials = {}, .criteria = {}, .next = {}, .backend = &call.backend};
+  TRY(call.backend.store.read([&](store::Reading& tx) -> Result<void> {
+    out.criteria = TRY(criteria_history(tx, store::CriteriaKind::programme, ""));
+    out.next = TRY(curriculum_next(tx, call));
+    return {};
+  }));
   out.cohort.scores = followed_metrics(trials);
   for (store::CohortTrial& trial : trials) {
     const std::string& who = name_of(trial);
@@ -209,22 +280,26 @@ Json list_json(const Programme& of) {
   for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
   std::ranges::sort(order, {}, [&](std::size_t i) { return of.cohort.trainees[i]; });
   Json list = Json::array();
-  for (const std::size_t i : order)
-    list.push_back(
-        short_json(of, i, assessment::trainee_report(of.cohort, i, of.rule, of.rules).report));
-  return {{"rule", rule_json(of)}, {"trainees", list}};
+  for (const std::size_t i : order) {
+    const TraineeRule rule = rule_of(of, i);
+    const auto report = assessment::trainee_report(of.cohort, i, rule.certification, rule.rules);
+    list.push_back(short_json(of, i, rule, report.report));
+  }
+  return {{"rule", rule_json(rule_for(of, {}))}, {"trainees", list}};
 }
 
 Json trainee_json(const Programme& of, std::size_t trainee) {
   const auto& attempts = of.cohort.attempts[trainee];
-  const Json report = assessment::trainee_report(of.cohort, trainee, of.rule, of.rules).report;
-  const Json rule = rule_json(of);
-  const auto standing = assessment::standing(attempts, of.rules.rates,
-                                             rule["threshold"].get<double>(), of.rules.relapse);
+  const TraineeRule whole = rule_of(of, trainee);
+  const Json report =
+      assessment::trainee_report(of.cohort, trainee, whole.certification, whole.rules).report;
+  const Json rule = rule_json(whole);
+  const auto standing = assessment::standing(
+      attempts, whole.rules.rates, report["threshold"].get<double>(), whole.rules.relapse);
   std::vector<std::optional<double>> confidence;
   for (const auto& trial : of.trials[trainee])
     confidence.push_back(confidence_of(*of.backend, trial.summary.id));
-  Json out = short_json(of, trainee, report);
+  Json out = short_json(of, trainee, whole, report);
   for (const char* key : {"competent_at_trial", "relapses", "scenarios", "scores"})
     out[key] = report[key];
   out["rule"] = rule;

@@ -5,15 +5,21 @@
 #include "db/store/cohort/cohort.hpp"
 #include "server/api/backend.hpp"
 #include "server/api/route.hpp"
+#include "server/api/studies/passing.hpp"
 
 namespace tractus::api {
 
-/// The trials that the caller may see, as a cohort, with the rule of certification.
+/// The next case that a curriculum wants of somebody.
+struct CurriculumNext {
+  std::string case_title, why;
+};
+
+/// The trials that the caller may see, as a cohort, with what passing is.
 struct Programme {
   assessment::Cohort cohort;
   std::vector<std::vector<store::CohortTrial>> trials;  ///< [trainee][attempt], as cohort.attempts
-  assessment::Certification rule;
-  assessment::TraineeRules rules;
+  CriteriaHistory criteria;                             ///< of the programme
+  std::map<std::string, CurriculumNext> next;           ///< by the trainee's name
   Backend* backend;
 };
 

@@ -65,20 +65,25 @@ std::vector<Field> standing_fields() {
 }
 
 std::vector<NamedSchema> list_schemas() {
-  return {{"TraineeSummary", object(standing_fields())},
-          {"CertificationRule",
-           object({{"adequate", number("1", "Failure rate of adequate performance, 0 to 1")},
-                   {"inadequate", number("1", "Failure rate of inadequate performance, 0 to 1")},
-                   {"trials", integer("1",
-                                      "Smallest number of trials after which certification is "
-                                      "possible; 0 if it is not possible within 400 trials")},
-                   {"threshold",
-                    number("1", "Threshold of the LC-CUSUM sum at which competence is signalled")},
-                   {"relapse",
-                    number("1", "Threshold of the CUSUM sum at which relapse is signalled")}})},
-          {"TraineeList",
-           object({{"rule", ref("CertificationRule")},
-                   {"trainees", array(ref("TraineeSummary"), "Trainees, sorted by name")}})}};
+  return {
+      {"TraineeSummary", object(standing_fields())},
+      {"CertificationRule",
+       object({{"adequate", number("1", "Failure rate of adequate performance, 0 to 1")},
+               {"inadequate", number("1", "Failure rate of inadequate performance, 0 to 1")},
+               {"trials", integer("1",
+                                  "Smallest number of trials after which certification is "
+                                  "possible; 0 if it is not possible within 400 trials")},
+               {"threshold",
+                number("1", "Threshold of the LC-CUSUM sum at which competence is signalled")},
+               {"relapse", number("1", "Threshold of the CUSUM sum at which relapse is signalled")},
+               {"version", integer("1",
+                                   "Version of the programme's criteria, counted from 1; "
+                                   "0 if the programme has stated none")},
+               {"requirements", array(text("A requirement in words"),
+                                      "What passing is, all of which must be met")}})},
+      {"TraineeList",
+       object({{"rule", ref("CertificationRule")},
+               {"trainees", array(ref("TraineeSummary"), "Trainees, sorted by name")}})}};
 }
 
 std::vector<NamedSchema> one_schemas() {

@@ -22,3 +22,7 @@ export { kKinds, kReleases, kWalls } from './teaching-schemas';
 export type * from './teaching-schemas';
 export type { Slice, SlicePlane, Vec3 } from './slices';
 export * from './oidc-queries';
+export * from './class-queries';
+export * from './sign-in-card';
+export * from './criteria-queries';
+export type * from './criteria-schemas';

@@ -14,6 +14,7 @@ export const accountSchema = v.object({
   has_pin: v.boolean(),
   has_codes: v.boolean(),
   must_change: v.boolean(),
+  level: v.string(),
   made_utc_us: inUtc,
 });
 export const accountListSchema = v.object({ accounts: v.array(accountSchema) });

@@ -15,6 +15,7 @@ import type {
   sentModelSchema,
 } from './lab-schemas';
 import type { backupListSchema } from './backup-queries';
+import type { changedAccountsSchema, importSchema } from './class-queries';
 import type { analysisRunSchema, planListSchema } from './cohort-queries';
 import type {
   accountListSchema,
@@ -74,6 +75,8 @@ export interface Agreed {
   readonly backups: Takes<typeof backupListSchema, Served['Backups']>;
   readonly studyEvents: Takes<typeof studyEventsSchema, Served['StudyEvents']>;
   readonly newAccount: Takes<typeof newAccountSchema, Served['NewAccountMade']>;
+  readonly classImport: Takes<typeof importSchema, Served['AccountsImported']>;
+  readonly changedAccounts: Takes<typeof changedAccountsSchema, Served['ChangedAccounts']>;
   readonly newPassword: Takes<typeof newPasswordSchema, Served['PasswordMade']>;
   readonly codes: Takes<typeof codesSchema, Served['CodesBegun']>;
   readonly enrolment: Takes<typeof enrolmentSchema, Served['EnrolmentCode']>;
@@ -113,6 +116,8 @@ export const kAgreed: Agreed = {
   sentModel: true,
   backups: true,
   newAccount: true,
+  classImport: true,
+  changedAccounts: true,
   newPassword: true,
   codes: true,
   enrolment: true,

@@ -2,6 +2,13 @@
 import type * as v from 'valibot';
 import type { components } from './generated/schema';
 import type {
+  criteriaListSchema,
+  curriculaSchema,
+  curriculumPeopleSchema,
+  expertBoundSchema,
+  passingSchema,
+} from './criteria-schemas';
+import type {
   assignmentListSchema,
   assignmentSchema,
   caseListSchema,
@@ -31,6 +38,11 @@ export interface TeachingAgreed {
   readonly references: Takes<typeof referenceListSchema, Served['ReferenceTrials']>;
   readonly way: Takes<typeof referenceWaySchema, Served['ReferenceWay']>;
   readonly makings: Takes<typeof makingListSchema, Served['CaseMakings']>;
+  readonly criteria: Takes<typeof criteriaListSchema, Served['CriteriaList']>;
+  readonly passing: Takes<typeof passingSchema, Served['Passing']>;
+  readonly bound: Takes<typeof expertBoundSchema, Served['ExpertBound']>;
+  readonly curricula: Takes<typeof curriculaSchema, Served['Curricula']>;
+  readonly curriculumPeople: Takes<typeof curriculumPeopleSchema, Served['CurriculumPeople']>;
   readonly volumes: Takes<typeof sourceVolumeListSchema, Served['VolumeList']>;
 }
 
@@ -46,5 +58,10 @@ export const kTeachingAgreed: TeachingAgreed = {
   references: true,
   way: true,
   makings: true,
+  criteria: true,
+  passing: true,
+  bound: true,
+  curricula: true,
+  curriculumPeople: true,
   volumes: true,
 };

@@ -14,6 +14,8 @@ const ruleSchema = v.object({
   trials: count,
   threshold: finite,
   relapse: finite,
+  version: count,
+  requirements: v.array(v.string()),
 });
 
 const standingFields = {

@@ -20,6 +20,9 @@ function decimalsOf(magnitude: number, figures: number): number {
   return Math.min(Math.max(figures - 1 - Math.floor(Math.log10(magnitude) + 1e-12), 0), 9);
 }
 
+/** The unit in which such a figure is typed and read, and how many of it make one SI unit. */
+export const typedIn = (unit: string): { readonly unit: string; readonly perSi: number } => shownAs(unit);
+
 const spelled = (value: number, unit: string, decimals: number) => {
   const as: Quantity = { name: '', decimals, ...shownAs(unit) };
   const text = digits(value, as, decimals);
@@ -95,3 +98,6 @@ export function nameAndUnit(name: string): { name: string; unit: string } {
   if (!ending) return { name: name.replaceAll('_', ' '), unit: '' };
   return { name: name.slice(0, -(ending.length + 1)).replaceAll('_', ' '), unit: kSpelled[ending] };
 }
+
+/** A number for a field to be typed over: what twelve digits leave of it, without the dust of a factor. */
+export const plainNumber = (value: number): string => String(Number.parseFloat(value.toPrecision(12)));

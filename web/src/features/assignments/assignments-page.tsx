@@ -59,9 +59,12 @@ export function AssignmentsPage() {
           </p>
         </div>
         {may ? (
-          <Link href="/assignments/new" className={styles.solid}>
-            New assignment
-          </Link>
+          <span className={styles.buttons}>
+            <Link href="/curricula">Curricula</Link>
+            <Link href="/assignments/new" className={styles.solid}>
+              New assignment
+            </Link>
+          </span>
         ) : null}
       </div>
       {query.isError ? (

@@ -1,8 +1,8 @@
 import { useMutation, useQuery, useQueryClient } from '@tanstack/react-query';
-import { useState, type FormEvent } from 'react';
+import { useState } from 'react';
+import { Link } from 'wouter';
 import {
   accountsQuery,
-  addAccount,
   kRoles,
   resetPassword,
   sessionQuery,
@@ -12,106 +12,12 @@ import {
   type Account,
   type Role,
 } from '@/api';
-import { AskDialog, Badge, Button, Card, DataTable, Field, Notice, Select } from '@/ui';
+import { AskDialog, Badge, Button, Card, DataTable, Field, Notice } from '@/ui';
 import { formatDateTime } from '@/units';
 import { Frame } from './frame';
+import { NewAccountCard, Once } from './new-account';
 import styles from './network.module.css';
-import { kRoleLabels, roleName } from './labels';
-
-/** A secret that the server created: shown once, on no other page. */
-export function Once({
-  title,
-  secret,
-  children,
-}: {
-  readonly title: string;
-  readonly secret: string;
-  readonly children: string;
-}) {
-  return (
-    <Notice tone="warn" title={title}>
-      <p className={styles.secret} data-part="secret">
-        {secret}
-      </p>
-      <p>{children}</p>
-    </Notice>
-  );
-}
-
-function NewAccountCard() {
-  const client = useQueryClient();
-  const [name, setName] = useState('');
-  const [role, setRole] = useState<Role>('trainee');
-  const [badge, setBadgeText] = useState('');
-  const [pin, setPin] = useState('');
-  const made = useMutation({
-    mutationFn: addAccount,
-    onSuccess: async () => {
-      setName('');
-      setBadgeText('');
-      setPin('');
-      await client.invalidateQueries({ queryKey: accountsQuery.queryKey });
-    },
-  });
-  const submit = (event: FormEvent) => {
-    event.preventDefault();
-    made.mutate({ name: name.trim(), role, ...(badge === '' ? {} : { badge }), ...(pin === '' ? {} : { pin }) });
-  };
-  return (
-    <Card title="New account">
-      <div className={styles.stack}>
-        <form className={styles.form} onSubmit={submit}>
-          <Field
-            label="Name"
-            value={name}
-            required
-            maxLength={100}
-            autoComplete="off"
-            onChange={(event) => setName(event.target.value)}
-          />
-          <Select
-            label="Role"
-            value={role}
-            onChange={(event) => {
-              const next = kRoles.find((one) => one === event.target.value);
-              if (next) setRole(next);
-            }}
-            options={kRoles.map((one) => ({ value: one, text: kRoleLabels[one].name }))}
-          />
-          <Field
-            label="Badge number (optional)"
-            value={badge}
-            maxLength={64}
-            autoComplete="off"
-            onChange={(event) => setBadgeText(event.target.value)}
-          />
-          <Field
-            label="PIN for stations (optional)"
-            value={pin}
-            maxLength={12}
-            inputMode="numeric"
-            autoComplete="off"
-            onChange={(event) => setPin(event.target.value)}
-          />
-          <p className={`${styles.wide} ${styles.muted}`}>{kRoleLabels[role].description}</p>
-          <Button look="solid" type="submit" disabled={made.isPending || name.trim() === ''}>
-            {made.isPending ? 'Creating…' : 'Create account'}
-          </Button>
-        </form>
-        {made.isError ? (
-          <Notice tone="bad" title="The account was not created.">
-            {made.error.message}
-          </Notice>
-        ) : null}
-        {made.data?.password ? (
-          <Once title={`First password of ${made.data.account.name}`} secret={made.data.password}>
-            This password is shown only once. It must be changed at the first sign-in.
-          </Once>
-        ) : null}
-      </div>
-    </Card>
-  );
-}
+import { roleName } from './labels';
 
 type AccountAction =
   | { readonly kind: 'password' | 'badge'; readonly account: Account }
@@ -187,6 +93,10 @@ export function PeoplePage() {
           off.
         </Once>
       ) : null}
+      <p className={styles.ways}>
+        <Link href="/class">Import a class from a spreadsheet</Link>
+        <Link href="/class/change">Change many accounts at once</Link>
+      </p>
       <NewAccountCard />
       <Card title="Accounts">
         <DataTable<Account>

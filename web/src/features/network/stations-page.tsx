@@ -6,7 +6,7 @@ import { AskDialog, Badge, Button, Card, DataTable, Field, Notice } from '@/ui';
 import { formatDateTime } from '@/units';
 import { Frame } from './frame';
 import styles from './network.module.css';
-import { Once } from './people-page';
+import { Once } from './new-account';
 import { calibrationLabel } from './labels';
 
 function Enrol() {

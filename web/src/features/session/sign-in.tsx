@@ -1,6 +1,6 @@
 import { useMutation, useQuery, useQueryClient } from '@tanstack/react-query';
 import { useEffect, useRef, useState, type FormEvent } from 'react';
-import { ApiError, kOidcStart, oidcOfferQuery, sessionQuery, signIn } from '@/api';
+import { ApiError, kOidcStart, oidcOfferQuery, readCard, sessionQuery, signIn } from '@/api';
 import { Button, Field, useTitle } from '@/ui';
 import { endedByItself } from './ended';
 import styles from './sign-in.module.css';
@@ -31,11 +31,15 @@ function providerMessage(): string {
   }
 }
 
+/** Name and first password of a sign-in card whose code was scanned. */
+const scannedCard = () => readCard(window.location.hash) ?? { name: '', password: '' };
+
 export function SignIn() {
   useTitle('Sign in');
   const client = useQueryClient();
-  const [name, setName] = useState('');
-  const [password, setPassword] = useState('');
+  const [card] = useState(scannedCard);
+  const [name, setName] = useState(card.name);
+  const [password, setPassword] = useState(card.password);
   const [code, setCode] = useState('');
   const [codeRequired, setCodeRequired] = useState(false);
   const [ended] = useState(endedByItself);
@@ -59,6 +63,10 @@ export function SignIn() {
   });
 
   useEffect(() => nameField.current?.focus(), []);
+  useEffect(() => {
+    // The password of a card must not stay in the address, nor in the browser's history.
+    if (readCard(window.location.hash)) window.history.replaceState(null, '', window.location.pathname);
+  }, []);
   useEffect(() => {
     if (codeRequired) codeField.current?.focus();
   }, [codeRequired]);

@@ -1,0 +1,228 @@
+import { useMutation, useQuery, useQueryClient } from '@tanstack/react-query';
+import { useState } from 'react';
+import {
+  accountsQuery,
+  changeAccounts,
+  cohortsQuery,
+  kRoles,
+  sessionQuery,
+  type Account,
+  type AccountChanges,
+  type Role,
+} from '@/api';
+import { AskDialog, Button, Card, DataTable, Field, Notice, Select } from '@/ui';
+import { formatCount } from '@/units';
+import { Badges } from './badges';
+import { Cards } from './cards';
+import styles from './class.module.css';
+import { Frame } from './frame';
+
+type What = 'level' | 'cohort' | 'role' | 'badges' | 'cards';
+const kActions: readonly { readonly value: What; readonly text: string }[] = [
+  { value: 'level', text: 'Set level' },
+  { value: 'cohort', text: 'Add to a cohort' },
+  { value: 'role', text: 'Change role' },
+  { value: 'badges', text: 'Assign badges' },
+  { value: 'cards', text: 'Print new sign-in cards' },
+];
+
+/** Asks for what is to be set of all chosen accounts. */
+function Change({
+  what,
+  chosen,
+  onChange,
+  onClose,
+}: {
+  readonly what: 'level' | 'cohort' | 'role' | 'cards';
+  readonly chosen: readonly Account[];
+  readonly onChange: (changes: Omit<AccountChanges, 'accounts'>) => Promise<unknown>;
+  readonly onClose: () => void;
+}) {
+  const cohorts = useQuery({ ...cohortsQuery, enabled: what === 'cohort' });
+  const [value, setValue] = useState(what === 'role' ? 'trainee' : '');
+  const many = `${formatCount(chosen.length)} ${chosen.length === 1 ? 'account' : 'accounts'}`;
+  const changes = (): Omit<AccountChanges, 'accounts'> => {
+    switch (what) {
+      case 'level':
+        return { level: value.trim() };
+      case 'cohort':
+        return { cohort: value };
+      case 'role':
+        return { role: value as Role };
+      case 'cards':
+        return { new_passwords: true };
+    }
+  };
+  return (
+    <AskDialog
+      title={`${kActions.find((one) => one.value === what)?.text ?? ''}: ${many}`}
+      action={what === 'cards' ? 'Make new cards' : 'Change'}
+      ready={what === 'cards' || what === 'level' || value !== ''}
+      onAction={() => onChange(changes())}
+      onClose={onClose}
+    >
+      {what === 'level' ? (
+        <Field
+          label="Level (empty: none)"
+          value={value}
+          maxLength={64}
+          onChange={(event) => setValue(event.target.value)}
+        />
+      ) : null}
+      {what === 'cohort' ? (
+        <Select
+          label="Cohort"
+          value={value}
+          onChange={(event) => setValue(event.target.value)}
+          options={[
+            { value: '', text: 'Choose a cohort' },
+            ...(cohorts.data?.cohorts ?? []).map(({ id, name }) => ({ value: id, text: name })),
+          ]}
+        />
+      ) : null}
+      {what === 'role' ? (
+        <>
+          <Select
+            label="Role"
+            value={value}
+            onChange={(event) => setValue(event.target.value)}
+            options={kRoles.map((role) => ({ value: role, text: role === 'admin' ? 'administrator' : role }))}
+          />
+          <p>
+            {value === 'admin'
+              ? `All ${many} will see and change everything on this server. `
+              : 'The people can do only what the new role allows. '}
+            All sessions of these accounts end.
+          </p>
+        </>
+      ) : null}
+      {what === 'cards' ? (
+        <p>
+          The present passwords of {many} become invalid, their sessions end, and their one-time codes are turned off.
+          Each person chooses a new password with the card.
+        </p>
+      ) : null}
+    </AskDialog>
+  );
+}
+
+/** Many accounts chosen from the list, and changed at once: all or none. */
+export function ChangePage() {
+  const client = useQueryClient();
+  const query = useQuery(accountsQuery);
+  const own = useQuery({ ...sessionQuery, enabled: false }).data?.id;
+  const [ids, setIds] = useState<ReadonlySet<string>>(new Set());
+  const [what, setWhat] = useState<What | null>(null);
+  const changed = useMutation({
+    mutationFn: changeAccounts,
+    onSuccess: () => client.invalidateQueries({ queryKey: accountsQuery.queryKey }),
+  });
+  const all = query.data?.accounts.filter(({ id }) => id !== own);
+  const chosen = (all ?? []).filter(({ id }) => ids.has(id));
+  const cards = changed.data?.accounts.filter(({ password }) => password !== null) ?? [];
+  const toggle = (id: string) => {
+    const next = new Set(ids);
+    if (!next.delete(id)) next.add(id);
+    setIds(next);
+  };
+  const choose = (rows: readonly Account[]) => setIds(new Set(rows.map(({ id }) => id)));
+  return (
+    <Frame
+      at="/class/change"
+      lead="Role, level, cohort, badges or new sign-in cards for many accounts at once. All are changed, or none. Your own account is not in the list."
+    >
+      {query.isError ? (
+        <Notice tone="bad" title="The accounts could not be loaded." onRetry={() => void query.refetch()}>
+          {query.error.message}
+        </Notice>
+      ) : null}
+      {cards.length > 0 ? (
+        <Cards
+          cards={cards.map(({ account, password }) => ({
+            name: account.name,
+            password: password ?? '',
+            badge: account.badge,
+          }))}
+        />
+      ) : null}
+      <div className={styles.screen}>
+        <Card
+          title="Accounts"
+          aside={
+            <span role="status" className={styles.muted}>
+              {formatCount(chosen.length)} chosen
+            </span>
+          }
+        >
+          <div className={styles.stack}>
+            <div className={styles.buttons}>
+              {kActions.map(({ value, text }) => (
+                <Button key={value} disabled={chosen.length === 0} onClick={() => setWhat(value)}>
+                  {text}…
+                </Button>
+              ))}
+              <Button look="quiet" onClick={() => choose((all ?? []).filter(({ role }) => role === 'trainee'))}>
+                Choose all trainees
+              </Button>
+              <Button look="quiet" disabled={chosen.length === 0} onClick={() => setIds(new Set())}>
+                Choose none
+              </Button>
+            </div>
+            {changed.isSuccess ? (
+              <p role="status">
+                {formatCount(changed.data.accounts.length)}{' '}
+                {changed.data.accounts.length === 1 ? 'account was' : 'accounts were'} changed.
+              </p>
+            ) : null}
+            <DataTable<Account>
+              address=""
+              caption="Accounts"
+              minWidth={560}
+              rows={all}
+              keyOf={({ id }) => id}
+              empty="No other accounts yet."
+              filter={{
+                label: 'Filter by name, role, level or badge',
+                text: (one) => `${one.name} ${one.role} ${one.level} ${one.badge ?? ''}`,
+              }}
+              columns={[
+                {
+                  name: 'Name',
+                  by: (one) => one.name,
+                  cell: (one) => (
+                    <label className={styles.choice}>
+                      <input type="checkbox" checked={ids.has(one.id)} onChange={() => toggle(one.id)} />
+                      {one.name}
+                    </label>
+                  ),
+                },
+                { name: 'Role', by: (one) => one.role, cell: (one) => one.role },
+                { name: 'Level', by: (one) => one.level, cell: (one) => one.level || '–' },
+                {
+                  name: 'Badge',
+                  by: (one) => one.badge,
+                  cell: (one) => `${one.badge ?? '–'}${one.has_pin ? ', PIN' : ''}`,
+                },
+                { name: 'State', by: (one) => one.state, cell: (one) => one.state },
+              ]}
+            />
+          </div>
+        </Card>
+      </div>
+      {what === 'badges' ? (
+        <Badges
+          accounts={chosen}
+          onSave={(accounts) => changed.mutateAsync({ accounts })}
+          onClose={() => setWhat(null)}
+        />
+      ) : what !== null ? (
+        <Change
+          what={what}
+          chosen={chosen}
+          onChange={(changes) => changed.mutateAsync({ accounts: chosen.map(({ id }) => ({ id })), ...changes })}
+          onClose={() => setWhat(null)}
+        />
+      ) : null}
+    </Frame>
+  );
+}

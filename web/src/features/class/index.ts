@@ -1,0 +1,2 @@
+export { ChangePage } from './change-page';
+export { ImportPage } from './import-page';

@@ -1,0 +1,255 @@
+import { useMutation, useQuery, useQueryClient } from '@tanstack/react-query';
+import { useState } from 'react';
+import { Link, useLocation } from 'wouter';
+import {
+  addCurriculum,
+  casesQuery,
+  curriculaQuery,
+  scenariosQuery,
+  type Curriculum,
+  type CurriculumVersion,
+} from '@/api';
+import { Button, Card, Field, Notice, Skeleton, useTitle } from '@/ui';
+import { formatCount } from '@/units';
+import styles from './criteria.module.css';
+import {
+  curriculumRequest,
+  draftOf,
+  newStep,
+  stepProblem,
+  withoutStep,
+  type CaseChoice,
+  type StepDraft,
+} from './draft';
+import { useMetrics } from './parts';
+import { RequirementsEditor } from './requirements-editor';
+
+const changedAt = ({ versions }: Curriculum): number => versions.at(-1)?.made_utc_us ?? 0;
+
+/** All cases and scenarios that a step can have, and those that its steps have already. */
+function useChoices(there: readonly CaseChoice[]): readonly CaseChoice[] | undefined {
+  const cases = useQuery(casesQuery).data?.cases;
+  const scenarios = useQuery(scenariosQuery).data;
+  if (!cases || !scenarios) return undefined;
+  const known: readonly CaseChoice[] = [
+    ...cases.filter(({ retired }) => !retired).map(({ id, title }) => ({ key: `case ${id}`, title })),
+    ...scenarios.scenarios
+      .filter(({ published }) => published)
+      .map(({ id, name }) => ({ key: `case ${id}`, title: name })),
+    ...scenarios.tuned.map(({ kind, name }) => ({ key: `tuned ${kind}`, title: `${name} (built-in)` })),
+  ];
+  const keys = new Set(known.map(({ key }) => key));
+  return [...known, ...there.filter(({ key }) => !keys.has(key))];
+}
+
+function Step({
+  step,
+  place,
+  before,
+  choices,
+  onStep,
+  onRemove,
+}: {
+  readonly step: StepDraft;
+  readonly place: number;
+  readonly before: readonly StepDraft[];
+  readonly choices: readonly CaseChoice[];
+  readonly onStep: (change: Partial<StepDraft>) => void;
+  readonly onRemove: () => void;
+}) {
+  const has = (key: string) => step.cases.some((one) => one.key === key);
+  const wrong = stepProblem(step);
+  return (
+    <Card
+      title={`Step ${formatCount(place + 1)}${step.name.trim() === '' ? '' : `: ${step.name}`}`}
+      aside={
+        <Button look="quiet" label={`Remove step ${formatCount(place + 1)}`} onClick={onRemove}>
+          Remove
+        </Button>
+      }
+    >
+      <div className={styles.stack}>
+        <div className={styles.form}>
+          <Field
+            label="Name, shown to trainees"
+            value={step.name}
+            maxLength={100}
+            onChange={(event) => onStep({ name: event.target.value })}
+          />
+          <Field
+            label="Planned trials of each case"
+            inputMode="numeric"
+            value={step.repeats}
+            onChange={(event) => onStep({ repeats: event.target.value })}
+          />
+        </div>
+        <fieldset className={styles.choices}>
+          <legend>Cases</legend>
+          {choices.map((one) => (
+            <label key={one.key}>
+              <input
+                type="checkbox"
+                checked={has(one.key)}
+                onChange={() =>
+                  onStep({
+                    cases: has(one.key) ? step.cases.filter(({ key }) => key !== one.key) : [...step.cases, one],
+                  })
+                }
+              />
+              {one.title}
+            </label>
+          ))}
+        </fieldset>
+        {before.length === 0 ? null : (
+          <fieldset className={styles.choices}>
+            <legend>Only after</legend>
+            {before.map(({ id, name }, i) => (
+              <label key={id}>
+                <input
+                  type="checkbox"
+                  checked={step.after.includes(id)}
+                  onChange={() =>
+                    onStep({
+                      after: step.after.includes(id) ? step.after.filter((one) => one !== id) : [...step.after, id],
+                    })
+                  }
+                />
+                {name.trim() === '' ? `Step ${formatCount(i + 1)}` : name}
+              </label>
+            ))}
+          </fieldset>
+        )}
+        <h3>Passed when</h3>
+        <RequirementsEditor
+          requirements={step.requirements}
+          onRequirements={(requirements) => onStep({ requirements })}
+        />
+        <p role="status" className={styles.muted}>
+          {wrong}
+        </p>
+      </div>
+    </Card>
+  );
+}
+
+function Editor({ id, of }: { readonly id: string | undefined; readonly of: CurriculumVersion | undefined }) {
+  const client = useQueryClient();
+  const [, go] = useLocation();
+  const { unitOf } = useMetrics();
+  const [title, setTitle] = useState(of?.title ?? '');
+  const [reason, setReason] = useState('');
+  const [steps, setSteps] = useState<readonly StepDraft[]>(
+    () =>
+      of?.steps.map((step) => ({
+        id: step.id,
+        name: step.name,
+        cases: step.cases.map((one) => ({ key: `case ${one.id}`, title: one.title })),
+        repeats: String(step.repeats),
+        after: step.after,
+        requirements: step.requirements.map((one) => draftOf(one, unitOf)),
+      })) ?? [newStep([])],
+  );
+  const choices = useChoices(steps.flatMap(({ cases }) => cases));
+  const made = useMutation({
+    mutationFn: () => addCurriculum(curriculumRequest(id, title, reason, steps, unitOf)),
+    onSuccess: (list) => {
+      client.setQueryData(curriculaQuery.queryKey, list);
+      const newest = [...list.curricula].sort((a, b) => changedAt(b) - changedAt(a))[0]?.id ?? '';
+      go(`/curricula/${id ?? newest}`);
+    },
+  });
+  const wrong = title.trim() === '' ? 'Enter a title.' : (steps.map(stepProblem).find((one) => one !== '') ?? '');
+  const change = (step: StepDraft, to: Partial<StepDraft>) =>
+    setSteps(steps.map((one) => (one.id === step.id ? { ...one, ...to } : one)));
+  return (
+    <>
+      <Card title="Curriculum">
+        <div className={styles.form}>
+          <Field
+            label="Title"
+            value={title}
+            maxLength={150}
+            required
+            placeholder="Pedicle screws, year 1"
+            onChange={(event) => setTitle(event.target.value)}
+          />
+          {id === undefined ? null : (
+            <Field
+              label="Reason of the change (optional)"
+              value={reason}
+              maxLength={400}
+              onChange={(event) => setReason(event.target.value)}
+            />
+          )}
+        </div>
+      </Card>
+      {choices === undefined ? (
+        <Skeleton height="320px" />
+      ) : (
+        steps.map((step, place) => (
+          <Step
+            key={step.id}
+            step={step}
+            place={place}
+            before={steps.slice(0, place)}
+            choices={choices}
+            onStep={(to) => change(step, to)}
+            onRemove={() => setSteps(withoutStep(steps, step.id))}
+          />
+        ))
+      )}
+      <div className={styles.buttons}>
+        <Button onClick={() => setSteps([...steps, newStep(steps)])}>Add a step</Button>
+      </div>
+      {made.isError ? (
+        <Notice tone="bad" title="The curriculum was not stored.">
+          {made.error.message}
+        </Notice>
+      ) : null}
+      <div className={styles.go}>
+        <span>{wrong}</span>
+        <Button
+          look="solid"
+          disabled={wrong !== '' || steps.length === 0 || made.isPending}
+          onClick={() => made.mutate()}
+        >
+          {id === undefined ? 'Make the curriculum' : 'Store as a new version'}
+        </Button>
+      </div>
+    </>
+  );
+}
+
+/** Writes a curriculum, or a new version of one. */
+export function CurriculumEditor({ id }: { readonly id?: string }) {
+  const query = useQuery({ ...curriculaQuery, enabled: id !== undefined });
+  const { metrics } = useMetrics();
+  const of = query.data?.curricula.find((one) => one.id === id)?.versions.at(-1);
+  const heading = id === undefined ? 'New curriculum' : 'Change the curriculum';
+  useTitle(heading);
+  const waits = (id !== undefined && query.data === undefined) || metrics.length === 0;
+  return (
+    <div className={styles.page}>
+      <p>
+        <Link href={id === undefined ? '/curricula' : `/curricula/${id}`}>← Curricula</Link>
+      </p>
+      <div>
+        <h1>{heading}</h1>
+        {id === undefined ? null : (
+          <p className={styles.lead}>
+            This makes a new version for those to come. Who has begun stays with the version they began with.
+          </p>
+        )}
+      </div>
+      {query.isError ? (
+        <Notice tone="bad" title="The curriculum could not be loaded." onRetry={() => void query.refetch()}>
+          {query.error.message}
+        </Notice>
+      ) : waits ? (
+        <Skeleton height="320px" />
+      ) : (
+        <Editor id={id} of={of} />
+      )}
+    </div>
+  );
+}

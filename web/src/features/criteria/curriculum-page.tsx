@@ -1,0 +1,255 @@
+import { useMutation, useQuery, useQueryClient } from '@tanstack/react-query';
+import { useState } from 'react';
+import { Link } from 'wouter';
+import {
+  cohortsQuery,
+  curriculaQuery,
+  curriculumProgressQuery,
+  giveCurriculum,
+  repeatStep,
+  type CurriculumPerson,
+  type CurriculumVersion,
+  type Release,
+} from '@/api';
+import { AskDialog, Badge, Button, Card, DataTable, Notice, Select, Skeleton, useTitle } from '@/ui';
+import { formatCount, formatDate, formatDateTime, isoDateTime } from '@/units';
+import styles from './criteria.module.css';
+import { Requirements, stateText, StepState } from './parts';
+
+function Steps({ of }: { readonly of: CurriculumVersion }) {
+  const nameOf = (id: string) => of.steps.find((step) => step.id === id)?.name ?? id;
+  return (
+    <ol className={styles.steps}>
+      {of.steps.map((step) => (
+        <li key={step.id}>
+          <h3>{step.name}</h3>
+          <p className={styles.muted}>
+            {step.after.length === 0 ? 'Open from the start. ' : `After: ${step.after.map(nameOf).join(', ')}. `}
+            {formatCount(step.repeats)} planned {step.repeats === 1 ? 'trial' : 'trials'} of each of{' '}
+            {step.cases.map(({ title }) => title).join(', ')}.
+          </p>
+          <Requirements of={step.requirements} />
+        </li>
+      ))}
+    </ol>
+  );
+}
+
+/** One line a person, as a file for a spreadsheet. */
+function csvOf(people: readonly CurriculumPerson[]): string {
+  const quoted = (text: string) => `"${text.replaceAll('"', '""')}"`;
+  const steps = [...new Set(people.flatMap((one) => one.steps.map(({ name }) => name)))];
+  const lines = people.map((one) => {
+    const cells = steps.map((name) => {
+      const step = one.steps.find((other) => other.name === name);
+      return step ? stateText(step.state) : '';
+    });
+    const since = one.passed_utc_us === null ? '' : isoDateTime(one.passed_utc_us);
+    return [quoted(one.name), String(one.version), one.passed ? 'yes' : 'no', since, ...cells.map(quoted)].join(',');
+  });
+  return [['name', 'version', 'passed', 'passed_utc', ...steps.map(quoted)].join(','), ...lines, ''].join('\n');
+}
+
+function save(name: string, text: string): void {
+  const link = document.createElement('a');
+  link.href = URL.createObjectURL(new Blob([text], { type: 'text/csv' }));
+  link.download = name;
+  link.click();
+  URL.revokeObjectURL(link.href);
+}
+
+function Give({ id }: { readonly id: string }) {
+  const client = useQueryClient();
+  const cohorts = useQuery(cohortsQuery).data?.cohorts ?? [];
+  const [cohort, setCohort] = useState('');
+  const [release, setRelease] = useState<Release>('at_once');
+  const given = useMutation({
+    mutationFn: () => giveCurriculum(id, cohort, release, null),
+    onSuccess: async (people) => {
+      client.setQueryData(curriculumProgressQuery(id).queryKey, people);
+      await client.invalidateQueries({ queryKey: ['assignments'] });
+    },
+  });
+  return (
+    <Card title="Give to a cohort">
+      <div className={styles.stack}>
+        <Select
+          label="Cohort"
+          value={cohort}
+          onChange={(event) => setCohort(event.target.value)}
+          options={[
+            { value: '', text: 'Choose a cohort' },
+            ...cohorts.map(({ id: value, name }) => ({ value, text: name })),
+          ]}
+        />
+        <Select
+          label="Trainees see their results"
+          value={release}
+          onChange={(event) => setRelease(event.target.value as Release)}
+          options={[
+            { value: 'at_once', text: 'as soon as a trial is uploaded' },
+            { value: 'held', text: 'not until they are released' },
+          ]}
+        />
+        <p className={styles.muted}>
+          Makes an assignment of each step. Also those who join the cohort later get the newest version that it was
+          given.
+        </p>
+        {given.isError ? (
+          <Notice tone="bad" title="The curriculum was not given.">
+            {given.error.message}
+          </Notice>
+        ) : null}
+        {given.isSuccess ? <p role="status">Given to the cohort.</p> : null}
+        <Button disabled={cohort === '' || given.isPending} onClick={() => given.mutate()}>
+          Give
+        </Button>
+      </div>
+    </Card>
+  );
+}
+
+function People({ id, people }: { readonly id: string; readonly people: readonly CurriculumPerson[] | undefined }) {
+  const client = useQueryClient();
+  const [again, setAgain] = useState<{ person: CurriculumPerson; step: string; name: string } | null>(null);
+  const passed = (one: CurriculumPerson) => one.steps.filter(({ state }) => state === 'passed').length;
+  return (
+    <Card
+      title="People"
+      aside={
+        people && people.length > 0 ? (
+          <Button onClick={() => save('curriculum.csv', csvOf(people))}>CSV</Button>
+        ) : undefined
+      }
+    >
+      <DataTable<CurriculumPerson>
+        address=""
+        caption="People"
+        minWidth={680}
+        rows={people}
+        keyOf={(one) => `${one.account_id} ${one.version}`}
+        empty="Nobody has this curriculum yet."
+        filter={{ label: 'Filter by name', text: ({ name }) => name }}
+        columns={[
+          {
+            name: 'Name',
+            by: ({ name }) => name,
+            cell: ({ name, simulated }) => (
+              <>
+                <Link href={`/trainees/${encodeURIComponent(name)}`}>{name}</Link>{' '}
+                {simulated ? <Badge tone="warn">simulated</Badge> : null}
+              </>
+            ),
+          },
+          { name: 'Version', by: ({ version }) => version, cell: ({ version }) => formatCount(version), number: true },
+          {
+            name: 'Steps',
+            by: passed,
+            cell: (person) => (
+              <ul className={styles.states}>
+                {person.steps.map((step) => (
+                  <li key={step.id}>
+                    {step.name} <StepState state={step.state} />{' '}
+                    <span className={styles.muted}>
+                      {formatCount(step.done)} of {formatCount(step.planned)}
+                    </span>
+                    {step.state === 'used_up' ? (
+                      <Button
+                        look="quiet"
+                        label={`Assign ${step.name} again to ${person.name}`}
+                        onClick={() => setAgain({ person, step: step.id, name: step.name })}
+                      >
+                        Assign again…
+                      </Button>
+                    ) : null}
+                  </li>
+                ))}
+              </ul>
+            ),
+          },
+          { name: 'Next case', by: ({ next }) => next?.case, cell: ({ next }) => next?.case ?? '–' },
+          {
+            name: 'Certificate',
+            by: ({ passed_utc_us }) => passed_utc_us,
+            cell: (one) =>
+              one.passed && one.passed_utc_us !== null ? (
+                <Link href={`/certificates/${one.account_id}/${one.curriculum_id}`}>
+                  passed {formatDate(one.passed_utc_us)}
+                </Link>
+              ) : (
+                '–'
+              ),
+          },
+        ]}
+      />
+      {again ? (
+        <AskDialog
+          title={`Assign ${again.name} again to ${again.person.name}?`}
+          action="Assign again"
+          onClose={() => setAgain(null)}
+          onAction={() =>
+            repeatStep(id, again.person.account_id, again.step).then((next) =>
+              client.setQueryData(curriculumProgressQuery(id).queryKey, next),
+            )
+          }
+        >
+          <p>The planned trials of the step are assigned once more. All trials of the step count together.</p>
+        </AskDialog>
+      ) : null}
+    </Card>
+  );
+}
+
+/** One curriculum: its steps, and where everybody stands. */
+export function CurriculumPage({ id }: { readonly id: string }) {
+  const query = useQuery(curriculaQuery);
+  const progress = useQuery(curriculumProgressQuery(id));
+  const one = query.data?.curricula.find((other) => other.id === id);
+  const newest = one?.versions.at(-1);
+  useTitle(newest?.title ?? 'Curriculum');
+  const failed = query.error ?? progress.error;
+  return (
+    <div className={styles.page}>
+      <p>
+        <Link href="/curricula">← Curricula</Link>
+      </p>
+      {failed ? (
+        <Notice
+          tone="bad"
+          title="The curriculum could not be loaded."
+          onRetry={() => {
+            void query.refetch();
+            void progress.refetch();
+          }}
+        >
+          {failed.message}
+        </Notice>
+      ) : null}
+      {query.data && !one ? <Notice tone="bad" title="There is no such curriculum." /> : null}
+      {query.isPending ? <Skeleton height="320px" /> : null}
+      {newest ? (
+        <>
+          <div className={styles.top}>
+            <div>
+              <h1>{newest.title}</h1>
+              <p className={styles.lead}>
+                Version {formatCount(newest.version)}, {formatDateTime(newest.made_utc_us)} by {newest.made_by}
+                {newest.reason === '' ? '' : `: ${newest.reason}`}
+              </p>
+            </div>
+            <Link href={`/curricula/${id}/edit`} className={styles.solid}>
+              Change…
+            </Link>
+          </div>
+          <People id={id} people={progress.data?.people} />
+          <div className={styles.two}>
+            <Card title="Steps">
+              <Steps of={newest} />
+            </Card>
+            <Give id={id} />
+          </div>
+        </>
+      ) : null}
+    </div>
+  );
+}
