@@ -8,6 +8,7 @@ import type {
   commentListSchema,
   makingListSchema,
   makingSchema,
+  plannedCertificateSchema,
   plannedTractSchema,
   referenceListSchema,
   referenceWaySchema,
@@ -23,6 +24,7 @@ export interface TeachingAgreed {
   readonly cases: Takes<typeof caseListSchema, Served['CaseList']>;
   readonly making: Takes<typeof makingSchema, Served['CaseMaking']>;
   readonly tract: Takes<typeof plannedTractSchema, Served['PlannedTract']>;
+  readonly certificate: Takes<typeof plannedCertificateSchema, Served['PlannedCertificate']>;
   readonly scenarios: Takes<typeof scenarioListSchema, Served['ScenarioVersions']>;
   readonly check: Takes<typeof scenarioCheckSchema, Served['ScenarioCheck']>;
   readonly assignments: Takes<typeof assignmentListSchema, Served['Assignments']>;
@@ -38,6 +40,7 @@ export const kTeachingAgreed: TeachingAgreed = {
   cases: true,
   making: true,
   tract: true,
+  certificate: true,
   scenarios: true,
   check: true,
   assignments: true,
