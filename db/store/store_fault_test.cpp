@@ -163,7 +163,7 @@ TEST_P(StoreFaults, ASignInIsWholeOrAbsent) {
 }
 
 TEST_P(StoreFaults, MigratingIsDoneAgainFromWhereItFailed) {
-  for (int n = 1; n < 100; ++n) {
+  for (int n = 1; n < 200; ++n) {
     const TestDatabase database(GetParam(), Content::nothing);
     int fails_at = n;
     FaultyConnection faulty(database.connection(Access::write), fails_at);
