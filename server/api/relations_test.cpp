@@ -267,9 +267,10 @@ TEST_F(Relations, ARouteThatChangesSomethingNamesEveryEndOrIsOfOneObject) {
       "appendUpload", "commitUpload", "reportStation", "stationModelThere", "makeEnrolmentCode",
       "enrolStation", "revokeStation", "stopStation", "limitStation",
       // what all who may call these have all of: volumes, cases, scenarios, models, measurements
-      "addVolume", "releaseVolume", "refuseVolume", "planTract", "makeCase", "retireCase",
-      "checkScenario", "addScenario", "publishScenario", "addModel", "addMeasurements",
-      "checkEffect", "startDiagnosis", "startComparison", "startFit", "stopLabRun", "publishLabRun",
+      "addVolume", "releaseVolume", "refuseVolume", "planTract", "certifyTract", "makeCase",
+      "retireCase", "checkScenario", "addScenario", "publishScenario", "addModel",
+      "addMeasurements", "checkEffect", "startDiagnosis", "startComparison", "startFit",
+      "stopLabRun", "publishLabRun",
       // released trials alone (db/store/cohort/released.hpp)
       "lockAnalysisPlan", "analyseCohort",
       // the server's own

@@ -9,9 +9,10 @@ namespace tractus::http {
 
 /// On which threads a request is handled.
 enum class Lane {
-  quick,    ///< the worker threads; the request waits for nothing slower than the disk
-  hashing,  ///< the request computes a password hash: 64 MiB and about 0.1 s of a core
-  remote,   ///< the request waits for another server
+  quick,      ///< the worker threads; the request waits for nothing slower than the disk
+  hashing,    ///< the request computes a password hash: 64 MiB and about 0.1 s of a core
+  remote,     ///< the request waits for another server
+  computing,  ///< the request computes for seconds; whoever asks may call it off
 };
 
 /// Who sends the request; requests of strangers may fill only a part of a lane's queue.

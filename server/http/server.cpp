@@ -78,7 +78,8 @@ struct Server::State {
         service(std::move(what)),
         workers(static_cast<std::size_t>(options.workers)),
         hashing(options.hashing),
-        remote(options.remote) {}
+        remote(options.remote),
+        computing(options.computing) {}
 
   struct Connection {
     Connection(tcp::socket socket, net::ssl::context* tls) : stream(std::move(socket), tls) {}
@@ -122,7 +123,7 @@ struct Server::State {
   tcp::acceptor acceptor{io};
   net::steady_timer drained{io};
   net::thread_pool workers;
-  Queue hashing, remote;
+  Queue hashing, remote, computing;
   std::list<Connection> connections;  ///< touched by the input/output thread alone
   bool draining = false;
 };
@@ -250,7 +251,8 @@ net::awaitable<bool> Server::State::exchange(Connection& c) {
 net::awaitable<Response> Server::State::handle(const Request& request) {
   const Lane lane = service.lane ? service.lane(request) : Lane::quick;
   if (lane == Lane::quick) co_return co_await on_workers(workers, Handling{&service, &request});
-  co_return co_await handle_queued(lane == Lane::hashing ? hashing : remote, request);
+  Queue& queue = lane == Lane::hashing ? hashing : lane == Lane::remote ? remote : computing;
+  co_return co_await handle_queued(queue, request);
 }
 
 /// Answers 503 at once when the lane's queue is full: whoever waits in it is answered soon.
@@ -448,7 +450,7 @@ void Server::run() {
   net::co_spawn(state_->io, state_->accept_all(), net::detached);
   state_->io.run();
   state_->workers.join();
-  for (Queue* queue : {&state_->hashing, &state_->remote}) {
+  for (Queue* queue : {&state_->hashing, &state_->remote, &state_->computing}) {
     queue->threads.stop();  // who waits in it has no connection any more
     queue->threads.join();
   }

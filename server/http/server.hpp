@@ -28,6 +28,7 @@ struct ServerOptions {
   int workers = 4;  ///< number of worker threads for handlers, besides the threads of the lanes
   LaneLimits hashing = hashing_limits();
   LaneLimits remote{.threads = 4, .waiting_strangers = 8, .waiting = 32};
+  LaneLimits computing{.threads = 2, .waiting_strangers = 4, .waiting = 16};
   int max_connections = 512;  ///< a further one closes the longest idle connection
   std::uint32_t max_header_bytes = 16 * 1024;
   std::chrono::milliseconds header_time{

@@ -52,7 +52,8 @@ core::Result<void> assess_trial(store::Store& store, const store::Objects& objec
     auto known = TRY(facts_of_trial(store, objects, record->summary.case_id, trial->header));
     facts = std::move(known);
     subject.tract = &facts->definition.tract;
-    if (facts->truth) subject.truth = metrics::Truth{.breached = facts->truth->breached};
+    if (facts->truth)
+      subject.truth = metrics::Truth{.breached = facts->truth->breached, .d_prime = facts->d_prime};
   } else {
     auto scenario = TRY(scenario_of(store, objects, record->summary.case_id));
     subject.truth =

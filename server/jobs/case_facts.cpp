@@ -65,6 +65,9 @@ core::Result<CaseFacts> case_facts(store::Store& store, const store::Objects& ob
   if (!truth) return out;
   auto known = TRY(cases::Truth::from_json(*truth, "case " + case_id + ": truth.json"));
   out.truth = std::move(known);
+  const auto certificate = TRY(case_json_part(store, objects, case_id, cases::kCertificatePart));
+  if (certificate && out.truth->breached)
+    out.d_prime = cases::d_prime_of(*certificate, *out.truth->breached);
   return out;
 }
 
@@ -74,6 +77,7 @@ core::Result<CaseFacts> facts_of_trial(store::Store& store, const store::Objects
   const auto drilled = header.extra.find("drilled");
   if (!facts || drilled == header.extra.end()) return facts;
   facts->truth.reset();
+  facts->d_prime.reset();
   if (!drilled->is_string()) return facts;
   auto trial = TRY(store.read(
       [&](store::Reading& tx) { return store::trial_of(tx, drilled->get<std::string>()); }));

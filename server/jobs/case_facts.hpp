@@ -10,7 +10,8 @@ namespace tractus::jobs {
 
 struct CaseFacts {
   cases::Case definition;
-  std::optional<cases::Truth> truth;  ///< absent when the bundle came without it
+  std::optional<cases::Truth> truth;   ///< absent when the bundle came without it
+  std::optional<double> d_prime = {};  ///< of its breach, by its certificate
 };
 
 /// Errors: not_found (no such case), those of reading.

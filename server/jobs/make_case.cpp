@@ -28,12 +28,20 @@ math::Vec3 point(core::Fields& fields, const char* key) {
   return {numbers[0], numbers[1], numbers[2]};
 }
 
-Result<volume::BreachPlan> breach_from(const Json& json, const std::string& where) {
+/// @param even  CarvingPlan::even
+Result<volume::BreachPlan> breach_from(const Json& json, const std::string& where, bool& even) {
   core::Fields fields(json, where);
   volume::BreachPlan out;
   out.wall = fields.word<volume::Wall>("wall");
   out.depth_m = fields.number_or("depth_m", out.depth_m, -kAny_m, kAny_m);
   if (fields.has("at_m")) out.at_m = fields.number("at_m", -kAny_m, kAny_m);
+  if (const Json* given = fields.member("even", false)) {
+    if (!given->is_boolean())
+      fields.wrong("even", "true or false is expected");
+    else
+      even = given->get<bool>();
+    if (even && out.at_m) fields.wrong("even", "a breach with a stated place cannot be moved");
+  }
   TRY(fields.done());
   return out;
 }
@@ -106,7 +114,7 @@ Result<cases::CarvingPlan> plan_from(core::Fields& fields) {
   if (!breach || breach->is_null()) return out;
   if (!out.drilled)
     fields.wrong("breach", "a planned channel has no breach: give null, or leave the field out");
-  auto read = TRY(breach_from(*breach, fields.where() + "/breach"));
+  auto read = TRY(breach_from(*breach, fields.where() + "/breach", out.even));
   out.breach = read;
   return out;
 }
@@ -122,6 +130,7 @@ Json plan_json(const cases::CarvingPlan& plan) {
   if (!plan.breach) return out;
   out["breach"] = {{"wall", volume::name(plan.breach->wall)}, {"depth_m", plan.breach->depth_m}};
   if (plan.breach->at_m) out["breach"]["at_m"] = *plan.breach->at_m;
+  if (plan.even) out["breach"]["even"] = true;
   return out;
 }
 

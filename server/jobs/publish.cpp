@@ -5,6 +5,7 @@
 #include "core/file.hpp"
 #include "core/try.hpp"
 #include "db/store/cases/cases.hpp"
+#include "db/store/operations/jobs.hpp"
 
 namespace tractus {
 namespace jobs {
@@ -16,6 +17,12 @@ core::Result<store::CasePart> put_file(const store::Objects& objects, const fs::
   auto bytes = TRY(core::read_file(file, 16u << 20));
   auto sha256 = TRY(objects.put(bytes));
   return store::CasePart{file.filename().string(), sha256, bytes.size(), false};
+}
+
+store::Felt felt_of(const cases::Case& made) {
+  if (made.planned) return store::Felt::not_known;
+  if (!made.certified) return store::Felt::untried;
+  return *made.certified ? store::Felt::told : store::Felt::not_told;
 }
 
 }  // namespace
@@ -42,8 +49,11 @@ core::Result<std::string> publish_bundle(
   store::CaseSummary summary{opened.id, opened.definition.title, opened.definition.source,
                              opened.definition.made_utc_us, 0};
   summary.planned = opened.definition.planned;
+  summary.felt = felt_of(opened.definition);
   TRY(store.write([&](store::Writing& tx) -> core::Result<void> {
     TRY(store::add_case(tx, summary, parts, core::utc_us()));
+    if (summary.felt == store::Felt::untried)
+      TRY(store::queue_job(tx, store::JobKind::felt, opened.id, core::utc_us()));
     return also ? also(tx, opened.id) : core::Result<void>();
   }));
   return opened.id;

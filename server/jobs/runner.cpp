@@ -14,6 +14,7 @@
 #include "db/store/trials/trials.hpp"
 #include "server/jobs/analyse.hpp"
 #include "server/jobs/assess.hpp"
+#include "server/jobs/certify_case.hpp"
 #include "server/jobs/lab_run.hpp"
 #include "server/jobs/make_case.hpp"
 
@@ -39,6 +40,8 @@ core::Result<void> show_failure(store::Writing& tx, const store::Job& job,
       return store::fail_analysis(tx, job.subject, error.what, core::utc_us());
     case JobKind::making:
       return store::fail_making(tx, job.subject, error.what, core::utc_us());
+    case JobKind::felt:  // the case stays untried, and its page says so
+      return {};
   }
   return {};
 }
@@ -51,6 +54,7 @@ core::Result<std::unique_ptr<Runner>> Runner::start(store::Store& store,
     TRY(store.write(
         [](store::Writing& tx) { return store::requeue_claimed_jobs(tx, core::utc_us()); }));
   }
+  TRY(queue_untried_cases(store));
   auto runner =
       std::unique_ptr<Runner>(new Runner(store, objects, std::move(keys), std::move(log), lease));
   auto listening = TRY(store.signals().listen(
@@ -194,6 +198,7 @@ core::Result<void> Runner::work_on(Lane& lane, const store::Job& job) {
   if (job.attempts > kMostAttempts)
     return core::Error{core::Errc::unavailable, "the server ended each time it ran this job"};
   const auto wants_to_end = [this, &lane] { return ending() || is_lost(lane); };
+  if (job.kind == JobKind::felt) return certify_case(store_, objects_, job.subject);
   if (job.kind == JobKind::making)
     return make_case(store_, objects_, keys_.cases, job.subject, wants_to_end);
   return job.kind == JobKind::analysis

@@ -76,7 +76,7 @@ class Runner {
   std::mutex mutex_;  ///< guards ending_ and the lanes' woken, job, lost
   bool ending_ = false;
   std::condition_variable changed_;
-  Lane scores_{{store::JobKind::metrics}}, cases_{{store::JobKind::making}},
+  Lane scores_{{store::JobKind::metrics}}, cases_{{store::JobKind::making, store::JobKind::felt}},
       lab_{{store::JobKind::lab, store::JobKind::analysis}};
   std::thread keeper_;
   std::unique_ptr<store::Listening> listening_;

@@ -26,7 +26,7 @@ constexpr const char* kManifest = "case.json";
 constexpr const char* kSignature = "case.sig";
 constexpr std::uint64_t kMaxManifest_bytes = 1u << 20;
 constexpr std::size_t kTruth_bytes = 1024;
-constexpr std::size_t kCertificate_bytes = 16384;
+constexpr std::size_t kCertificate_bytes = 65536;
 constexpr std::size_t kPictureStep_bytes = 1u << 19;
 constexpr std::size_t kRead_bytes = 1u << 20;
 

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/try.hpp"
+#include "volume/calibration.hpp"
 #include "volume/resample.hpp"
 
 namespace tractus {
@@ -18,6 +19,7 @@ using math::Vec3;
 
 constexpr double kLongest_m = 0.2, kWidest_m = 0.01, kThinnest_m = 0.0002;
 constexpr double kSurroundings_m = 0.040, kSurroundingsSpacing_m = 0.0005;
+constexpr double kFarthestMove_m = 0.003;
 constexpr double kFarthestMidline_m = 0.1;   // a pedicle is some 10 to 30 mm from it
 constexpr double kFarBehindFront_m = 0.004;  // a tract that ends farther back has no anterior wall
 constexpr double kOpenAir_m = 0.002;         // the channel goes on for so much behind the bone
@@ -56,6 +58,7 @@ core::Result<void> check(const CarvingPlan& plan, double length_m,
   TRY(within("a length", length_m, 1e-4, kLongest_m));
   TRY(within("a radius", plan.radius_m, kThinnest_m, kWidest_m));
   TRY(within("a margin", plan.margin_m, 1e-3, 0.1));
+  TRY(within("a way to move", plan.may_move_m, 0.0, kFarthestMove_m));
   TRY(within("a spacing", plan.spacing_m, 5e-5, 5e-3));
   if (!geometry.contains(plan.entry_m)) return outside("the entry", plan.entry_m, geometry);
   return {};
@@ -102,6 +105,13 @@ core::Result<std::shared_ptr<const volume::Envelope>> envelope_of(const volume::
                                depth_m * 1e3)};
   }
   return envelope;
+}
+
+std::vector<std::string> warnings_of(const volume::Volume& ct, const volume::Envelope& envelope,
+                                     const volume::Tract& tract) {
+  auto found = volume::calibrate(volume::histogram_of(ct), ct.geometry);
+  volume::calibrate_bone(ct, envelope, tract, found);
+  return found.warnings;
 }
 
 /// The tract's length in filled bone, where none is asked for: to shortly before the anterior face.
@@ -201,6 +211,7 @@ core::Result<Placed> place(const volume::Volume& ct, const volume::TransferFunct
   if (plan.preparation == volume::Preparation::published)
     return with_walls(ct, transfer, plan, std::move(placed));
   placed.envelope = TRY(envelope_of(ct, plan, tract));
+  placed.warnings = warnings_of(ct, *placed.envelope, tract);
   const auto bone = TRY(prepared_ct(ct, transfer, placed));
   if (!plan.length_m)
     placed.tract.length_m = length_to_front_m(volume::WallFinder(bone, transfer), tract);

@@ -22,6 +22,12 @@ struct CarvingPlan {
   std::optional<double> length_m = {};
   double radius_m = 0.0015;  ///< the 3 mm drill of [Zoller2020]
   std::optional<volume::BreachPlan> breach = {};
+  /// In filled bone, for a breach without a stated place: where it is as hard to tell as those of
+  /// the other walls (cases::make_five), not where it is told best.
+  bool even = false;
+  /// Where a certificate does not pass, entry and target may be moved together across the axis by
+  /// at most this, in steps of 1 mm, to where it does.
+  double may_move_m = 0.0;
   std::optional<double> midline_x_m = {};  ///< stated by a person; estimated if not given
   double spacing_m = 0.00035;              ///< of the drilled volume, where the CT is coarser
   double margin_m = 0.020;                 ///< of the drilled volume about tract and breach
@@ -47,6 +53,7 @@ struct Placed {
   /// In the order of volume::kWalls, before the drill: where each wall is thinnest, or why that is
   /// not known.
   std::vector<core::Result<volume::WallFound>> walls;
+  std::vector<std::string> warnings = {};  ///< of filled bone: volume::Calibration's
 
   Truth truth() const;
   bool left_side() const { return midline.left_of_plane_m(tract.entry_m) > 0; }

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace tractus {
 namespace cases {
@@ -12,6 +13,22 @@ constexpr const char* kCertificateFormat = "tractus-certificate/1";
 
 core::Json word_or_null(const auto& value) {
   return value ? core::Json(std::string(name(*value))) : core::Json();
+}
+
+/// To a hundredth: a list of places stays short.
+core::Json hundredth_or_null(const std::optional<double>& value) {
+  return value ? core::Json(std::round(*value * 100.0) / 100.0) : core::Json();
+}
+
+core::Json places_json(const std::vector<TriedPlace>& places) {
+  core::Json at = core::Json::array(), k = at, b = at, fa = at;
+  for (const TriedPlace& place : places) {
+    at.push_back(std::round(place.at_m * 1e5) / 1e5);
+    k.push_back(hundredth_or_null(place.told.k));
+    b.push_back(hundredth_or_null(place.told.b));
+    fa.push_back(hundredth_or_null(place.told.fa));
+  }
+  return {{"at_m", at}, {"k", k}, {"b", b}, {"fa", fa}};
 }
 
 }  // namespace
@@ -37,12 +54,15 @@ core::Json WallCertificate::to_json() const {
           {"k", core::or_null(told.k)},
           {"b", core::or_null(told.b)},
           {"fa", core::or_null(told.fa)},
+          {"fa_wall", word_or_null(told.fa_wall)},
+          {"fa_at_m", told.fa_wall ? core::Json(told.fa_at_m) : core::Json()},
           {"motion", word_or_null(told.motion)},
           {"contrast", word_or_null(told.contrast)},
           {"lean_m", told.lean_m},
           {"force_N", told.force_N},
           {"end_force_N", wall == volume::Wall::anterior ? core::Json(end_force_N) : core::Json()},
-          {"why_not", core::or_null(why_not)}};
+          {"why_not", core::or_null(why_not)},
+          {"places", places_json(places)}};
 }
 
 bool Certificate::passes() const {
@@ -77,6 +97,19 @@ core::Json Certificate::to_json() const {
       d_prime[std::string(volume::name(volume::kWalls[w]))] = core::or_null(one.d_prime[w]);
     out["sensitivities"].push_back(
         {{"assumption", one.assumption}, {"value", one.value}, {"d_prime", d_prime}});
+  }
+  return out;
+}
+
+std::optional<double> d_prime_of(const core::Json& certificate, volume::Wall wall) {
+  std::optional<double> out;
+  const auto walls = certificate.find("walls");
+  if (walls == certificate.end() || !walls->is_array()) return out;
+  for (const core::Json& one : *walls) {
+    if (core::text_member(one, "wall") != volume::name(wall)) continue;
+    for (const char* key : {"k", "b"})
+      if (const auto at = one.find(key); at != one.end() && at->is_number())
+        out = std::min(out.value_or(at->get<double>()), at->get<double>());
   }
   return out;
 }

@@ -12,6 +12,12 @@
 
 namespace tractus::cases {
 
+/// A place of a wall at which a breach was tried, and what can be told of it there.
+struct TriedPlace {
+  double at_m = 0.0;  ///< depth along the tract
+  Detectability told = {};
+};
+
 /// One wall: of the breach that the case has there, else of the one that its maker would make.
 struct WallCertificate {
   /// d′ that a side wall must reach with min(K, B), the end with K; so much must B lie over FA.
@@ -21,8 +27,9 @@ struct WallCertificate {
   volume::Wall wall = volume::Wall::medial;
   std::optional<double> at_m = {};  ///< depth along the tract; absent where there is no place
   Detectability told = {};
-  double end_force_N = 0.0;  ///< of the end alone
-  std::string why_not = {};  ///< one line for a wall that was not tried
+  double end_force_N = 0.0;             ///< of the end alone
+  std::string why_not = {};             ///< one line for a wall that was not tried
+  std::vector<TriedPlace> places = {};  ///< of a side wall: all that were tried, by depth
 
   /// min(K, B) of a side wall, K of the end; absent where it was not tried.
   std::optional<double> d_prime() const;
@@ -51,5 +58,8 @@ struct Certificate {
   std::string warning() const;
   core::Json to_json() const;
 };
+
+/// d′ of a wall by a certificate's JSON; absent where it does not say.
+std::optional<double> d_prime_of(const core::Json& certificate, volume::Wall wall);
 
 }  // namespace tractus::cases

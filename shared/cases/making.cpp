@@ -14,9 +14,12 @@ namespace {
 using volume::Breach;
 using volume::Wall;
 
-constexpr double kRing_m = 0.012;       // outer faces of a ring lie within it
+constexpr double kRing_m = 0.012;       // inner faces of a ring lie within it
+constexpr double kOuterRing_m = 0.014;  // outer faces of a ring of filled bone
 constexpr double kPastMouth_m = 0.005;  // of the ring's first depth begin the places that are felt
 constexpr double kRingStep_m = 0.001;
+constexpr double kMove_m = 0.001;
+constexpr double kBoneShare = 0.1;   // of a making's progress
 constexpr double kTapped_m = 0.003;  // WallCertificate::kLeastEndForce_N within
 
 /// Depths at which every side wall is found, with what `bound` says of each.
@@ -96,27 +99,47 @@ double score(const WallCertificate& wall) {
   return wall.told.fa ? std::min(*d, *wall.told.b - *wall.told.fa + 2.0) : *d;
 }
 
-/// A breach that was tried, the best of its wall.
-struct Best {
+struct Attempt {
   Breach breach;
   Palpated palpated;
   WallCertificate certificate;
 };
 
-core::Result<std::optional<Best>> best_of(Tried& tried, const std::vector<Breach>& breaches) {
-  std::optional<Best> best;
-  for (const Breach& breach : breaches) {
-    auto palpated = TRY(tried.palpated(breach));
-    auto certificate = tried.certify(breach, palpated);
-    if (!best || score(certificate) > score(best->certificate))
-      best = Best{breach, std::move(palpated), std::move(certificate)};
-  }
-  return best;
+/// All that were tried of one wall, by depth; none: why not.
+struct Wanted {
+  std::vector<Attempt> attempts;
+  std::string why_not;
+  std::size_t chosen = 0;
+  const Attempt* best() const { return attempts.empty() ? nullptr : &attempts[chosen]; }
+};
+
+std::size_t best_of(const std::vector<Attempt>& attempts) {
+  const auto by_score = [](const Attempt& a) { return score(a.certificate); };
+  return std::size_t(std::ranges::max_element(attempts, {}, by_score) - attempts.begin());
+}
+
+/// Of the attempts that pass, the one as hard to tell as `level`; where none does, the best.
+std::size_t nearest_to(double level, const std::vector<Attempt>& attempts) {
+  std::size_t out = best_of(attempts);
+  const auto away = [&](std::size_t n) {
+    return std::abs(attempts[n].certificate.d_prime().value_or(0.0) - level);
+  };
+  for (std::size_t n = 0; n < attempts.size(); ++n)
+    if (attempts[n].certificate.passes() && away(n) < away(out)) out = n;
+  return out;
+}
+
+/// Moves every wall's breach to where it is as hard to tell as that of the hardest wall.
+void make_even(std::vector<Wanted>& walls) {
+  double hardest = 1e300;
+  for (const Wanted& wall : walls)
+    if (wall.best()) hardest = std::min(hardest, wall.best()->certificate.d_prime().value_or(0.0));
+  for (Wanted& wall : walls)
+    if (wall.best()) wall.chosen = nearest_to(hardest, wall.attempts);
 }
 
 /// d′ of every wall under other assumptions.
-std::vector<Sensitivity> sensitivities(const Tried& tried,
-                                       const std::vector<std::optional<Best>>& best) {
+std::vector<Sensitivity> sensitivities(const Tried& tried, const std::vector<Wanted>& walls) {
   const std::vector<std::pair<const char*, double Perception::*>> fields{
       {"force_weber", &Perception::force_weber},
       {"force_threshold_N", &Perception::force_threshold_N},
@@ -127,9 +150,9 @@ std::vector<Sensitivity> sensitivities(const Tried& tried,
       Perception other;
       other.*field *= factor;
       Sensitivity one{.assumption = assumption, .value = other.*field};
-      for (std::size_t w = 0; w < best.size(); ++w)
-        if (best[w])
-          one.d_prime[w] = tried.certify(best[w]->breach, best[w]->palpated, other).d_prime();
+      for (std::size_t w = 0; w < walls.size(); ++w)
+        if (const Attempt* best = walls[w].best())
+          one.d_prime[w] = tried.certify(best->breach, best->palpated, other).d_prime();
       out.push_back(std::move(one));
     }
   return out;
@@ -144,7 +167,7 @@ class Places {
     const volume::WallFinder finder(bone, transfer);
     const bool filled = placed.envelope != nullptr;
     ring_m_ = enclosed_depths(finder, placed.tract, [&](const volume::WallFound& found) {
-      return (filled ? found.outer_m : found.inner_m) <= kRing_m;
+      return filled ? found.outer_m <= kOuterRing_m : found.inner_m <= kRing_m;
     });
   }
 
@@ -171,7 +194,7 @@ class Places {
           core::Errc::out_of_range,
           fmt::format("{}: no part of the tract beyond {:.0f} mm has all four walls within {:.0f} "
                       "mm: move entry or target",
-                      volume::name(wall), from_m() * 1e3, kRing_m * 1e3)};
+                      volume::name(wall), from_m() * 1e3, kOuterRing_m * 1e3)};
     return out;
   }
 
@@ -183,66 +206,199 @@ class Places {
   std::vector<double> ring_m_;
 };
 
-struct Judged {
-  Certificate certificate;
-  std::optional<Breach> breach;  ///< the one that the plan asks for, in its place
+/// Steps of a progress, one a breach.
+class Steps {
+ public:
+  Steps(const core::Progress& progress, std::size_t steps) : progress_(progress), steps_(steps) {}
+  core::Result<void> next() {
+    const double share = kBoneShare + (1.0 - kBoneShare) * double(done_++) / double(steps_);
+    if (!progress_ || progress_(share)) return {};
+    return core::Error{core::Errc::cancelled, "the making of a case was cancelled"};
+  }
+
+ private:
+  const core::Progress& progress_;
+  std::size_t steps_, done_ = 0;
 };
 
-/// Tries every wall. Errors: of the wall that the plan asks for; the others' are their `why_not`.
-core::Result<Judged> judge(const Places& places, Tried& tried, const CarvingPlan& plan) {
-  Judged out;
-  out.certificate.preparation = plan.preparation;
-  std::vector<std::optional<Best>> best;
-  for (const Wall wall : volume::kWalls) {
-    const bool asked = plan.breach && plan.breach->wall == wall;
-    const auto breaches = places.of(wall);
-    if (!breaches && asked) return breaches.error();
-    best.emplace_back();
-    if (breaches) best.back() = TRY(best_of(tried, *breaches));
-    out.certificate.walls.push_back(best.back() ? best.back()->certificate
-                                                : WallCertificate{.wall = wall});
-    if (!breaches) out.certificate.walls.back().why_not = breaches.error().what;
-    if (asked && best.back()) out.breach = best.back()->breach;
+core::Result<std::vector<Attempt>> tried_at(Tried& tried, const std::vector<Breach>& breaches,
+                                            Steps& steps) {
+  std::vector<Attempt> out;
+  for (const Breach& breach : breaches) {
+    TRY(steps.next());
+    auto palpated = TRY(tried.palpated(breach));
+    auto certificate = tried.certify(breach, palpated);
+    out.push_back({breach, std::move(palpated), std::move(certificate)});
   }
-  out.certificate.sensitivities = sensitivities(tried, best);
   return out;
+}
+
+/// Tries every wall. Errors: of a wall that the plan asks for; the others' are their `why_not`.
+core::Result<std::vector<Wanted>> try_walls(const Places& places, Tried& tried,
+                                            const CarvingPlan& plan, Effort effort,
+                                            const core::Progress& progress) {
+  std::vector<core::Result<std::vector<Breach>>> all;
+  std::size_t steps = 0;
+  for (const Wall wall : volume::kWalls) {
+    all.push_back(places.of(wall));
+    const bool asked = plan.breach && plan.breach->wall == wall;
+    if (!all.back() && asked) return all.back().error();
+    if (all.back() && effort == Effort::first)
+      *all.back() = {(*all.back())[all.back()->size() / 2]};
+    steps += all.back() ? all.back()->size() : 0;
+  }
+  Steps counted(progress, steps);
+  std::vector<Wanted> out;
+  for (const auto& breaches : all) {
+    Wanted wall;
+    if (breaches) {
+      wall.attempts = TRY(tried_at(tried, *breaches, counted));
+      wall.chosen = best_of(wall.attempts);
+    } else {
+      wall.why_not = breaches.error().what;
+    }
+    out.push_back(std::move(wall));
+  }
+  return out;
+}
+
+WallCertificate certificate_of(Wall wall, const Wanted& wanted) {
+  if (!wanted.best()) return {.wall = wall, .why_not = wanted.why_not};
+  WallCertificate out = wanted.best()->certificate;
+  if (wall == Wall::anterior) return out;
+  for (const Attempt& attempt : wanted.attempts)
+    out.places.push_back({attempt.breach.wall.at_m, attempt.certificate.told});
+  return out;
+}
+
+/// What every making shares: the bone before the drill, and what can be told in it.
+struct Judged {
+  Placed placed;
+  volume::Volume bone;
+  std::vector<Wanted> walls;
+  Certificate certificate;
+  math::Vec2 moved_m = math::Vec2::Zero();
+
+  Made made(const std::optional<Breach>& breach) const {
+    Made out{{placed, bone}, certificate, moved_m};
+    out.breach = breach;
+    volume::drill(out.volume, out.tract, out.mouth_m, out.breach, out.empty_value);
+    return out;
+  }
+};
+
+core::Result<Judged> judge(const volume::Volume& ct, const models::PalpationModel& model,
+                           const CarvingPlan& plan, Effort effort, const core::Progress& progress) {
+  Judged out{TRY(place(ct, model.transfer, plan)), {}, {}, {}};
+  const core::Progress resampling =
+      progress ? [&](double share) { return progress(kBoneShare * share); } : core::Progress();
+  out.bone = TRY(bone_about(ct, model.transfer, plan, out.placed, resampling));
+  const auto bone = TRY(prepared_ct(ct, model.transfer, out.placed));
+  const Places places(bone, model.transfer, plan, out.placed);
+  auto tried = TRY(Tried::make(out.bone, model, out.placed, places.from_m()));
+  out.walls = TRY(try_walls(places, tried, plan, effort, progress));
+  if (plan.even) make_even(out.walls);
+  out.certificate.preparation = plan.preparation;
+  for (std::size_t w = 0; w < out.walls.size(); ++w)
+    out.certificate.walls.push_back(certificate_of(volume::kWalls[w], out.walls[w]));
+  if (effort == Effort::whole) out.certificate.sensitivities = sensitivities(tried, out.walls);
+  return out;
+}
+
+/// The ways to move a tract by at most so much, in steps of a millimetre, the nearest first.
+std::vector<math::Vec2> moves(double most_m) {
+  std::vector<math::Vec2> out;
+  const int most = int(most_m / kMove_m + 1e-9);
+  for (int a = -most; a <= most; ++a)
+    for (int b = -most; b <= most; ++b)
+      if (const math::Vec2 move = kMove_m * math::Vec2(a, b);
+          (a || b) && move.norm() <= most_m + 1e-9)
+        out.push_back(move);
+  std::ranges::stable_sort(out, {}, [](const math::Vec2& move) { return move.norm(); });
+  return out;
+}
+
+/// The plan as it is, or, where it does not pass and may be moved, the nearest one that passes. If
+/// none does: as it is.
+core::Result<Judged> judge_moved(const volume::Volume& ct, const models::PalpationModel& model,
+                                 const CarvingPlan& plan, const core::Progress& progress) {
+  auto as_planned = judge(ct, model, plan, Effort::whole, progress);
+  if (as_planned && as_planned->certificate.passes()) return as_planned;
+  if (!as_planned) return as_planned;
+  const auto& tract = as_planned->placed.tract;
+  for (const math::Vec2& move : moves(plan.may_move_m)) {
+    CarvingPlan other = plan;
+    const math::Vec3 by = move.x() * tract.medial + move.y() * tract.superior;
+    other.entry_m += by, other.target_m += by;
+    auto moved = judge(ct, model, other, Effort::whole, progress);
+    if (!moved && moved.error().code == core::Errc::cancelled) return moved;
+    if (!moved || !moved->certificate.passes()) continue;
+    moved->moved_m = move;
+    return moved;
+  }
+  return as_planned;
+}
+
+core::Error no_channel() {
+  return {core::Errc::bad_input, "a planned channel has no walls to feel"};
 }
 
 }  // namespace
 
 core::Result<Made> make(const volume::Volume& ct, const models::PalpationModel& model,
                         const CarvingPlan& plan, const core::Progress& progress) {
-  Made made{{TRY(place(ct, model.transfer, plan)), {}}, {}};
-  made.volume = TRY(bone_about(ct, model.transfer, plan, made, progress));
-  if (!made.drilled) return made;
-  const auto bone = TRY(prepared_ct(ct, model.transfer, made));
-  const Places places(bone, model.transfer, plan, made);
-  auto tried = TRY(Tried::make(made.volume, model, made, places.from_m()));
-  auto judged = TRY(judge(places, tried, plan));
-  made.certificate = std::move(judged.certificate);
-  made.breach = judged.breach;
-  volume::drill(made.volume, made.tract, made.mouth_m, made.breach, made.empty_value);
-  return made;
+  if (!plan.drilled) return Made{TRY(carve(ct, model.transfer, plan, progress)), {}};
+  const auto judged = TRY(judge_moved(ct, model, plan, progress));
+  if (!plan.breach) return judged.made({});
+  return judged.made(judged.walls[std::size_t(plan.breach->wall)].best()->breach);
 }
 
-core::Result<WallCertificate> certify_drilled(const volume::Volume& drilled,
-                                              const models::PalpationModel& model,
-                                              const volume::Tract& tract, Wall wall, double at_m) {
-  if (wall == Wall::anterior)
-    return core::Error{core::Errc::bad_input,
-                       "an anterior breach is told from the same bone without it: make the case "
-                       "anew from its CT"};
-  const volume::WallFinder finder(drilled, model.transfer);
+core::Result<std::vector<Made>> make_five(const volume::Volume& ct,
+                                          const models::PalpationModel& model, CarvingPlan plan,
+                                          const core::Progress& progress) {
+  if (!plan.drilled) return no_channel();
+  plan.breach.reset();
+  plan.even = true;
+  const auto judged = TRY(judge_moved(ct, model, plan, progress));
+  if (!judged.certificate.passes())
+    return core::Error{core::Errc::out_of_range,
+                       judged.certificate.warning() + "; move entry or target"};
+  std::vector<Made> out;
+  for (const Wanted& wall : judged.walls) out.push_back(judged.made(wall.best()->breach));
+  return out;
+}
+
+core::Result<Certificate> certify(const volume::Volume& ct, const models::PalpationModel& model,
+                                  const CarvingPlan& plan, Effort effort,
+                                  const core::Progress& progress) {
+  if (!plan.drilled) return no_channel();
+  return TRY(judge(ct, model, plan, effort, progress)).certificate;
+}
+
+core::Result<Certificate> certify_drilled(const volume::Volume& drilled, const Case& made,
+                                          const Truth& truth) {
+  if (made.planned) return no_channel();
+  if (!truth.breached || *truth.breached == Wall::anterior)
+    return core::Error{
+        core::Errc::out_of_range,
+        fmt::format("what can be felt of {} is not known from the drilled bone: make "
+                    "the case anew from its CT",
+                    truth.breached ? "an anterior breach" : "a case without a breach")};
+  const auto& tract = made.tract;
+  const volume::WallFinder finder(drilled, made.model.transfer);
   const auto enclosed = enclosed_depths(
       finder, tract, [](const volume::WallFound& found) { return found.inner_m <= kRing_m; });
   const double mouth_m = enclosed.empty() ? 0.25 * tract.length_m : enclosed.front();
-  const Observer observer(model, tract, mouth_m + kPastMouth_m);
-  const auto field = TRY(volume::ForceField::make(drilled, model.transfer, model.field));
+  const Observer observer(made.model, tract, mouth_m + kPastMouth_m);
+  const auto field = TRY(volume::ForceField::make(drilled, made.model.transfer, made.model.field));
   const auto felt = observer.felt(TRY(observer.palpate(field)), {});
-  return WallCertificate{.wall = wall,
-                         .at_m = at_m,
-                         .told = observer.detect(felt, felt, wall, at_m, {}),
-                         .end_force_N = observer.end_force_N(felt, kTapped_m)};
+  const double at_m = tract.depth_of(*truth.breach_m);
+  Certificate out{.preparation = made.preparation};
+  out.walls.push_back({.wall = *truth.breached,
+                       .at_m = at_m,
+                       .told = observer.detect(felt, felt, *truth.breached, at_m, {}),
+                       .end_force_N = observer.end_force_N(felt, kTapped_m)});
+  return out;
 }
 
 }  // namespace cases

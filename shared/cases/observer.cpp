@@ -221,6 +221,8 @@ Detectability Observer::of_side(const Felt& whole, const Felt& breached, std::si
                                 double at_m, const Perception& perception) const {
   struct Place {
     double f, mean_N, variance_N2;
+    std::size_t wall;
+    int depth;
   };
   const bool twin = &whole != &breached;
   Detectability best;
@@ -238,17 +240,19 @@ Detectability Observer::of_side(const Felt& whole, const Felt& breached, std::si
             const auto& grid = whole.side[motion][w];
             const double f = feature(whole, motion, contrast, w, i, j);
             if (std::isnan(f)) continue;
-            places.push_back({f, grid.mean_N[at], grid.variance_N2[at]});
+            places.push_back({f, grid.mean_N[at], grid.variance_N2[at], w, i});
             means.push_back(grid.mean_N[at]);
           }
         if (places.size() < 20 || median(means) > kHardest_N) continue;
         double mean = 0.0, variance = 0.0;
         for (const Place& p : places) mean += p.f / double(places.size());
         for (const Place& p : places) variance += squared(p.f - mean) / double(places.size());
-        double fa = -1e300;
-        for (const Place& p : places)
-          fa = std::max(fa, (mean - p.f) / std::sqrt(variance + noise_N2(p.mean_N, perception) +
-                                                     p.variance_N2));
+        const auto dip = [&](const Place& p) {
+          return (mean - p.f) /
+                 std::sqrt(variance + noise_N2(p.mean_N, perception) + p.variance_N2);
+        };
+        const Place& worst = *std::ranges::max_element(places, {}, dip);
+        const double fa = dip(worst);
         for (int i = 0; i < depths_; ++i) {
           if (std::abs(depth_m(i) - at_m) > kAtBreach_m + 1e-9) continue;
           const auto at = std::size_t(i * kGrids[motion].leans + j);
@@ -266,6 +270,8 @@ Detectability Observer::of_side(const Felt& whole, const Felt& breached, std::si
           best = {.k = twin ? std::optional(k) : std::nullopt,
                   .b = b,
                   .fa = fa,
+                  .fa_wall = Wall(worst.wall),
+                  .fa_at_m = depth_m(worst.depth),
                   .motion = Motion(motion),
                   .contrast = contrast,
                   .lean_m = j * kGrids[motion].step_m,

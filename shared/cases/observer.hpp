@@ -53,6 +53,8 @@ struct Detectability {
   std::optional<double> k;  ///< d′ of a press against the same place without the breach
   std::optional<double> b;  ///< d′ of the breach against all places of this tract; not of the end
   std::optional<double> fa;  ///< d′ of the worst whole place, which passes for a breach
+  std::optional<volume::Wall> fa_wall = {};  ///< where that is
+  double fa_at_m = 0.0;                      ///< depth along the tract
   std::optional<Motion> motion = {};
   std::optional<Contrast> contrast = {};
   double lean_m = 0.0;   ///< of the straight tip beyond the axis; at the end: beyond the end

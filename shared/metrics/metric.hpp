@@ -20,6 +20,8 @@ namespace tractus::metrics {
 struct Truth {
   std::optional<volume::Wall> breached;  ///< palpation: which wall is breached, if any
   int walls = 0;                         ///< probing: how many walls the scenario lets give way
+  /// Palpation: how well an ideal observer tells the breach; absent where the case does not say.
+  std::optional<double> d_prime = {};
 };
 
 class ThresholdStatistics;

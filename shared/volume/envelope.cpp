@@ -26,6 +26,9 @@ constexpr float kFaceBehind = 0.5f;                 // μ
 constexpr float kFaint = 0.2f;                      // e₀
 constexpr float kNoFace = -0.1f;                    // cost of no face within reach
 constexpr float kStep = 0.06f, kMostSteps = 12.0f;  // price of a step of kRadialStep_m, and its cap
+constexpr double kNoFace_m = 0.021;                 // a face beyond it is none
+constexpr int kAside = 2;                           // rays to each side of a wall's direction
+constexpr double kMostOpen = 0.15;                  // of them without a face
 constexpr double kThickestSlice_m = 0.0035;
 constexpr double kMetal = 2500.0, kNearMetal_m = 0.006;     // cortex stays under 2000 HU
 constexpr double kRing_m = 0.014;                           // faces of a pedicle lie within it
@@ -201,6 +204,25 @@ core::Result<void> check_ring(const Volume& ct, const Fan& fan, const FoundEnvel
   return {};
 }
 
+/// A vertebra ends within reach to lateral, superior and inferior; a rib, a fused neighbour or the
+/// facet of one goes on. To medial its body may be wider than that.
+core::Result<void> check_leak(const Fan& fan, const FoundEnvelope& envelope) {
+  for (const auto& [side, middle] :
+       {std::pair("superior", kAround / 4), std::pair("lateral", kAround / 2),
+        std::pair("inferior", 3 * kAround / 4)}) {
+    int open = 0, rays = 0;
+    for (int row = 0; row < fan.rows(); ++row)
+      for (int turn = middle - kAside; fan.beside(row) && turn <= middle + kAside; ++turn)
+        open += envelope.at(row, turn) >= kNoFace_m, ++rays;
+    if (open > kMostOpen * rays)
+      return refusal(fmt::format(
+          "the bone is not left within {:.0f} mm to {} of {:.0f} % of the tract: a rib, a fused "
+          "neighbour or its facet? Move entry or target, or give the envelope",
+          kNoFace_m * 1e3, side, 100.0 * open / rays));
+  }
+  return {};
+}
+
 class LabelEnvelope final : public Envelope {
  public:
   explicit LabelEnvelope(Volume inside)
@@ -258,6 +280,7 @@ core::Result<std::unique_ptr<Envelope>> envelope_about(const Volume& ct, const T
   auto found = std::make_unique<FoundEnvelope>(fan, smoothed(face_m, fan.rows()),
                                                ct.geometry.spacing_m.mean());
   TRY(check_ring(ct, fan, *found));
+  TRY(check_leak(fan, *found));
   return std::unique_ptr<Envelope>(std::move(found));
 }
 

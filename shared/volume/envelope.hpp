@@ -46,7 +46,8 @@ class Envelope {
 /// Known limit: about an entry that lies behind the vertebra a facet of the neighbour may be in it.
 ///
 /// Errors: out_of_range with one line for the person who asked: slices thicker than 3.5 mm, metal
-/// or a contrast agent in the tract, a tract that no closed ring of bone surrounds.
+/// or a contrast agent in the tract, a tract that no closed ring of bone surrounds, bone that goes on
+/// beyond reach to lateral, superior or inferior.
 core::Result<std::unique_ptr<Envelope>> envelope_about(const Volume& ct, const Tract& tract);
 
 /// The voxels of a label map that carry `label`, as another program segmented them; between voxels

@@ -98,6 +98,24 @@ TEST(EnvelopeAbout, SaysWhatItCannotBeFoundIn) {
   EXPECT_THAT(why(drawn_soft(soft_bone), beside), HasSubstr("no closed ring"));
 }
 
+/// Bone that goes on from the body: as a rib to lateral, as a fused neighbour to superior.
+TEST(EnvelopeAbout, RefusesBoneThatGoesOnBeyondTheVertebra) {
+  const auto why = [](const Scene& scene) {
+    const auto found = envelope_about(drawn_soft(scene), soft_tract());
+    return found ? std::string("found") : found.error().what;
+  };
+  const auto joined = [](const Vec3& p_m, const Vec3& along) {
+    const Vec3 p = p_m * 1e3 - Vec3(0, -30, 0);
+    const double far = p.dot(along), off = (p - far * along).norm();
+    if (far < 0.0 || off > 14.0) return soft_bone(p_m);
+    return off > 12.8 ? 700.0 : 60.0;
+  };
+  EXPECT_THAT(why([&](const Vec3& p) { return joined(p, Vec3::UnitX()); }),
+              HasSubstr("to lateral"));
+  EXPECT_THAT(why([&](const Vec3& p) { return joined(p, Vec3::UnitZ()); }),
+              HasSubstr("to superior"));
+}
+
 TEST(EnvelopeOfLabels, IsTheLabelsVoxels) {
   Volume labels{.geometry = {{4, 4, 4}, Vec3::Constant(0.001), Vec3::Zero(), Mat3::Identity()},
                 .slope = 1,

@@ -18,12 +18,12 @@ constexpr auto words(Preparation) {
   return std::to_array<core::Word<Preparation>>({{published, "published"}, {filled, "filled"}});
 }
 
-inline constexpr double kLeastOpacity = 0.6;  ///< of what is filled
+inline constexpr double kLeastOpacity = 0.8;  ///< of what is filled
 
 /// Raises what lies in the envelope, by its share s there, to the CT value of an opacity that grows
 /// with density (own):
 ///
-///     v′ = v + s · max(0, f(v) − v),   α(f(v)) = 1 − 0.4 (1 − c) (1 − clamp(v / v₁, 0, 1))
+///     v′ = v + s · max(0, f(v) − v),   α(f(v)) = 1 − 0.2 (1 − c) (1 − clamp(v / v₁, 0, 1))
 ///
 /// v₁ is where the transfer function first reaches its greatest opacity; c is the cortex's share: 1
 /// within 1 mm of the outer face, 0 from 1.5 mm on. So cancellous bone keeps its order of density,

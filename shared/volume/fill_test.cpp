@@ -18,10 +18,10 @@ class RoundEnvelope final : public Envelope {
 Filling filling() { return *Filling::make(TransferFunction::bone()); }
 
 TEST(Filling, GradesMarrowByDensityAndLeavesCortex) {
-  // α = 0.6 + 0.4 v/700, v′ = 150 + 550 α, by hand.
-  EXPECT_NEAR(filling().filled(80.0), 150.0 + 550.0 * (0.6 + 0.4 * 80.0 / 700.0), 1e-9);
-  EXPECT_NEAR(filling().filled(-90.0), 480.0, 1e-9);  // fat: the least, 0.6
-  EXPECT_NEAR(filling().filled(350.0), 590.0, 1e-9);
+  // α = 0.8 + 0.2 v/700, v′ = 150 + 550 α, by hand.
+  EXPECT_NEAR(filling().filled(80.0), 150.0 + 550.0 * (0.8 + 0.2 * 80.0 / 700.0), 1e-9);
+  EXPECT_NEAR(filling().filled(-90.0), 590.0, 1e-9);  // fat: the least, 0.8
+  EXPECT_NEAR(filling().filled(350.0), 645.0, 1e-9);
   EXPECT_NEAR(filling().filled(700.0), 700.0, 1e-9);
   EXPECT_EQ(filling().filled(1300.0), 1300.0);
 }
@@ -36,7 +36,7 @@ TEST(Filling, ChangesNothingOutsideTheEnvelope) {
               .counts = std::vector<std::uint16_t>(31 * 31 * 21, 1024 + 80)};
   filling().fill(bone, RoundEnvelope(), {.entry_m = Vec3::Zero(), .length_m = 0.01});
   EXPECT_EQ(bone.value_at(Vec3(0.005, 0.0, 0.005)), 80.0);
-  EXPECT_NEAR(bone.value_at(Vec3(0.002, 0.0, 0.005)), 505.14, 0.5);
+  EXPECT_NEAR(bone.value_at(Vec3(0.002, 0.0, 0.005)), 602.57, 0.5);
   EXPECT_EQ(bone.value_at(Vec3(0.0035, 0.0, 0.005)), 700.0);  // cortex
   EXPECT_NEAR(bone.value_at(Vec3(0.0, 0.004, 0.005)), 80.0 + 0.5 * (700.0 - 80.0), 0.5);
 }

@@ -125,10 +125,10 @@ TEST_F(Carve, FillsMarrowAndSaysWhatCanBeFelt) {
   const bool passes = (*report)["certificate"]["passes"].get<bool>();
   EXPECT_EQ(*opened->definition.certified, passes);
   EXPECT_EQ(tractus("case certify case").exit, passes ? 0 : 1);
-  // Marrow of 60 HU above the channel: α = 0.6 + 0.4 · 60/700, so 150 + 550 α = 498.9 HU by hand.
+  // Marrow of 60 HU above the channel: α = 0.8 + 0.2 · 60/700, so 150 + 550 α = 599.4 HU by hand.
   const auto drilled = volume::VolumeFile::open(work() / "case" / "volume.tvol")->read_all();
   ASSERT_TRUE(drilled);
-  EXPECT_NEAR(drilled->value_at(Vec3(0.022, 0.014, 0.003)), 498.9, 2.0);
+  EXPECT_NEAR(drilled->value_at(Vec3(0.022, 0.014, 0.003)), 599.4, 2.0);
   for (const cases::Part& part : opened->definition.parts)
     EXPECT_EQ(part.secret, part.name != cases::kVolumePart) << part.name;
 }
@@ -137,7 +137,7 @@ TEST_F(Carve, TriesACaseThatWasMadeWithoutACertificate) {
   ASSERT_EQ(carve("--no-channel " + std::string(kLeft)).exit, 0);
   const auto ran = tractus("case certify case");
   EXPECT_EQ(ran.exit, 2);
-  EXPECT_THAT(ran.err, HasSubstr("make it anew"));
+  EXPECT_THAT(ran.err, HasSubstr("a planned channel has no walls to feel"));
 }
 
 TEST_F(Carve, KnowsTheRightPedicleFromTheLeft) {

@@ -10,12 +10,23 @@ namespace {
 constexpr const char* kSummary =
     "select c.id, c.title, c.source, c.made_utc_us, "
     "(select count(*) from trials t where t.case_id = c.id), c.kind, "
-    "case when c.retired_utc_us is null then 0 else 1 end, c.planned from cases c ";
+    "case when c.retired_utc_us is null then 0 else 1 end, c.planned, c.felt from cases c ";
 
 core::Result<CaseSummary> case_from(const Row& row) {
   const auto kind = TRY(row.word<trial::Rig>(5, "cases.kind"));
-  return CaseSummary{row.text(0),  row.text(1), row.text(2),  row.integer(3),
-                     row.count(4), kind,        row.truth(6), row.truth(7)};
+  const auto felt = TRY(row.word<Felt>(8, "cases.felt"));
+  return CaseSummary{row.text(0),  row.text(1),  row.text(2), row.integer(3), row.count(4), kind,
+                     row.truth(6), row.truth(7), felt};
+}
+
+core::Result<void> add_part(Writing& tx, const std::string& case_id, const CasePart& part,
+                            std::int64_t now_utc_us) {
+  TRY(add_object(tx, part.sha256, part.size_bytes, now_utc_us));
+  TRY(tx.query(
+      "insert into case_parts (case_id, name, sha256, size_bytes, secret) "
+      "values (?, ?, ?, ?, ?) on conflict (case_id, name) do nothing",
+      {case_id, part.name, part.sha256, count_value(part.size_bytes), bool_value(part.secret)}));
+  return {};
 }
 
 }  // namespace
@@ -31,22 +42,32 @@ core::Result<void> add_object(Writing& tx, const std::string& sha256, std::uint6
 
 core::Result<void> add_case(Writing& tx, const CaseSummary& summary,
                             const std::vector<CasePart>& parts, std::int64_t now_utc_us) {
-  auto done = tx.query(
-      "insert into cases (id, title, source, made_utc_us, published_utc_us, kind, planned) "
-      "values (?, ?, ?, ?, ?, ?, ?) on conflict (id) do update set planned = ?",
+  TRY(tx.query(
+      "insert into cases (id, title, source, made_utc_us, published_utc_us, kind, planned, "
+      "felt) values (?, ?, ?, ?, ?, ?, ?, ?) on conflict (id) do update set planned = ?",
       {summary.id, summary.title, summary.source, summary.made_utc_us, now_utc_us,
-       name_value(summary.kind), bool_value(summary.planned), bool_value(summary.planned)});
-  if (!done) return done.error();
-  for (const CasePart& part : parts) {
-    TRY(add_object(tx, part.sha256, part.size_bytes, now_utc_us));
-    done = tx.query(
-        "insert into case_parts (case_id, name, sha256, size_bytes, secret) "
-        "values (?, ?, ?, ?, ?) on conflict (case_id, name) do nothing",
-        {summary.id, part.name, part.sha256, count_value(part.size_bytes),
-         bool_value(part.secret)});
-    if (!done) return done.error();
-  }
+       name_value(summary.kind), bool_value(summary.planned), name_value(summary.felt),
+       bool_value(summary.planned)}));
+  for (const CasePart& part : parts) TRY(add_part(tx, summary.id, part, now_utc_us));
   return {};
+}
+
+core::Result<void> set_case_felt(Writing& tx, const std::string& id, Felt felt,
+                                 const std::optional<CasePart>& certificate,
+                                 std::int64_t now_utc_us) {
+  const auto rows = TRY(tx.query("update cases set felt = ? where id = ? and felt = ? returning id",
+                                 {name_value(felt), id, name_value(Felt::untried)}));
+  if (!rows.empty() && certificate) TRY(add_part(tx, id, *certificate, now_utc_us));
+  return {};
+}
+
+core::Result<std::vector<std::string>> untried_cases(Reading& tx) {
+  const auto rows =
+      TRY(tx.query("select id from cases where kind = ? and felt = ? order by published_utc_us, id",
+                   {name_value(trial::Rig::palpation), name_value(Felt::untried)}));
+  std::vector<std::string> out;
+  for (const Row& row : rows) out.push_back(row.text(0));
+  return out;
 }
 
 core::Result<std::vector<CaseSummary>> all_cases(Reading& tx) {

@@ -3,10 +3,24 @@
 
 #include <vector>
 
+#include "core/named.hpp"
 #include "db/store/store.hpp"
 #include "trial/trial.hpp"
 
 namespace tractus::store {
+
+/// Whether a case's breaches can be told by feel, by its certificate.
+enum class Felt {
+  untried,    ///< no certificate yet: a job will try it
+  told,       ///< all of them
+  not_told,   ///< not all of them
+  not_known,  ///< of a case whose drilled bone does not say, or with nothing to tell
+};
+constexpr auto words(Felt) {
+  using enum Felt;
+  return std::to_array<core::Word<Felt>>(
+      {{untried, "untried"}, {told, "told"}, {not_told, "not_told"}, {not_known, "not_known"}});
+}
 
 struct CaseSummary {
   std::string id;  ///< SHA-256 of case.json; of a scenario, its version's id
@@ -18,6 +32,7 @@ struct CaseSummary {
   trial::Rig kind = trial::Rig::palpation;
   bool retired = false;  ///< new assignments cannot use it; existing ones continue
   bool planned = false;  ///< the bone is whole: a trainee drills the channel, then palpates it
+  Felt felt = Felt::untried;
 };
 
 /// A file of the bundle, case.json and case.sig among them.
@@ -38,6 +53,13 @@ core::Result<std::optional<CaseSummary>> case_of(Reading& tx, const std::string&
 /// Retires a case, or offers it again. Errors: not_found.
 core::Result<void> set_case_retired(Writing& tx, const std::string& id, bool retired,
                                     std::int64_t now_utc_us);
+/// Notes what was found of an untried case, with its certificate as a part where there is one; of
+/// any other case nothing changes.
+core::Result<void> set_case_felt(Writing& tx, const std::string& id, Felt felt,
+                                 const std::optional<CasePart>& certificate,
+                                 std::int64_t now_utc_us);
+/// Palpation cases with a channel that nobody has tried, oldest first.
+core::Result<std::vector<std::string>> untried_cases(Reading& tx);
 core::Result<std::optional<CasePart>> case_part(Reading& tx, const std::string& case_id,
                                                 const std::string& name);
 

@@ -33,7 +33,7 @@ constexpr const char* kRows[] = {
     "values ('a', '', '', 'full', 'signed', 1, 'ada')",
     "insert into pseudonym_keys (fingerprint, since_utc_us) values ('f', 1)",
     "insert into cases (id, title, source, made_utc_us, published_utc_us, kind, retired_utc_us, "
-    "planned) values ('k', 'L3', 'made', 1, 1, 'palpation', 2, 0)",
+    "planned, felt) values ('k', 'L3', 'made', 1, 1, 'palpation', 2, 0, 'told')",
     "insert into case_parts (case_id, name, sha256, size_bytes, secret) values ('k', 'truth.json', "
     "'o', 1, 1)",
     "insert into studies (id, title, state, ordering, repeats, seed, on_invalid, made_utc_us, "

@@ -19,11 +19,15 @@ enum class JobKind {
   lab,       ///< a run of the model lab
   analysis,  ///< a run of a cohort's analysis
   making,    ///< a case made from a volume
+  felt,      ///< the certificate of a case that was made without one
 };
 constexpr auto words(JobKind) {
   using enum JobKind;
-  return std::to_array<core::Word<JobKind>>(
-      {{metrics, "metrics"}, {lab, "lab"}, {analysis, "analysis"}, {making, "case"}});
+  return std::to_array<core::Word<JobKind>>({{metrics, "metrics"},
+                                             {lab, "lab"},
+                                             {analysis, "analysis"},
+                                             {making, "case"},
+                                             {felt, "felt"}});
 }
 
 /// How far the work on an analysis or a case has come.

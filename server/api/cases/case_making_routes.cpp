@@ -115,24 +115,6 @@ Result<http::Response> retire(const Call& call) {
   return http::Response{.status = 204, .headers = {}, .body = std::string()};
 }
 
-std::vector<schema::Field> plan_fields() {
-  using namespace schema;
-  const Json point = tuple(number("m", "One coordinate x, y or z, in metres"), 3,
-                           "Point in the volume's frame (LPS), in metres");
-  return {{"entry_m", point},
-          {"target_m", point},
-          {"radius_m", optional(number("m", "Radius of the drill, in metres; default 0.0015"))},
-          {"channel",
-           optional(one_of({"drilled", "planned"},
-                           "drilled (default): the channel is drilled into the volume; planned: "
-                           "the bone stays whole, and a trainee drills the channel"))},
-          {"preparation",
-           optional(one_of<volume::Preparation>(
-               "published (default): the CT's own values, marrow is not felt; filled: all bone "
-               "within the vertebra's envelope is felt"))},
-          {"breach", optional(nullable(ref("BreachWish")))}};
-}
-
 std::vector<NamedSchema> tract_schemas() {
   using namespace schema;
   const Json wall = one_of<volume::Wall>("Wall of the tract");
@@ -149,8 +131,12 @@ std::vector<NamedSchema> tract_schemas() {
             {"depth_m", optional(number(
                             "m", "Depth of the breach beyond the bone, in metres; default 0.003"))},
             {"at_m",
-             optional(number(
-                 "m", "Depth along the tract, in metres; default: where the wall is thinnest"))}})},
+             optional(
+                 number("m",
+                        "Depth along the tract, in metres; default: where the wall is thinnest, in "
+                        "filled bone where the breach is told best"))},
+            {"even", optional(truth("True: in filled bone, where the breach is as hard to tell as "
+                                    "those of the other walls; without at_m"))}})},
       {"TractWish", object(plan_fields())},
       {"PlannedWall",
        object({{"wall", wall},
@@ -183,7 +169,10 @@ std::vector<NamedSchema> tract_schemas() {
                             "Walls in the order medial, lateral, superior, inferior, anterior")},
             {"breach", nullable(ref("PlannedBreach"))},
             {"problems", array(text("One problem, as a sentence"),
-                               "Problems of the plan; empty if a case can be made from it")}})}};
+                               "Problems of the plan; empty if a case can be made from it")},
+            {"warnings", array(text("One warning, as a sentence"),
+                               "What makes the CT a poor one for filled bone; a case can be made "
+                               "all the same")}})}};
 }
 
 std::vector<NamedSchema> making_schemas() {
@@ -228,6 +217,24 @@ RouteInfo case_making_route(std::string method, std::string path, std::string id
 }
 
 }  // namespace
+
+std::vector<schema::Field> plan_fields() {
+  using namespace schema;
+  const Json point = tuple(number("m", "One coordinate x, y or z, in metres"), 3,
+                           "Point in the volume's frame (LPS), in metres");
+  return {{"entry_m", point},
+          {"target_m", point},
+          {"radius_m", optional(number("m", "Radius of the drill, in metres; default 0.0015"))},
+          {"channel",
+           optional(one_of({"drilled", "planned"},
+                           "drilled (default): the channel is drilled into the volume; planned: "
+                           "the bone stays whole, and a trainee drills the channel"))},
+          {"preparation",
+           optional(one_of<volume::Preparation>(
+               "published (default): the CT's own values, marrow is not felt; filled: all bone "
+               "within the vertebra's envelope is felt"))},
+          {"breach", optional(nullable(ref("BreachWish")))}};
+}
 
 std::vector<RouteInfo> case_making_routes() {
   RouteInfo look =

@@ -3,10 +3,13 @@
 
 #include "core/try.hpp"
 #include "db/store/cases/case_makings.hpp"
+#include "db/store/cases/cases.hpp"
 #include "db/store/volumes/volumes.hpp"
 #include "server/api/people/people_test_support.hpp"
 #include "server/jobs/case_facts.hpp"
+#include "server/jobs/certify_case.hpp"
 #include "server/jobs/make_case.hpp"
+#include "server/jobs/publish.hpp"
 #include "volume/volume_file.hpp"
 
 namespace tractus {
@@ -150,6 +153,70 @@ TEST_F(CaseMaking, ACaseIsMadeWhereThePlanSaidAndSignedByTheServer) {
   EXPECT_EQ(
       ask(request("GET", "/api/v1/cases/" + id + "/parts/truth.json", station("token-1"))).status,
       403);
+}
+
+TEST_F(CaseMaking, APlanIsPalpatedBeforeACaseIsMadeOfIt) {
+  const auto asked = [&](const char* who, const core::Json& more) {
+    return post(who, "/volumes/released/certificate", plan(more));
+  };
+  const auto seen = asked("fay", {{"effort", "first"}, {"preparation", "filled"}});
+  ASSERT_EQ(seen.status, 200) << text(seen);
+  const core::Json found = json(seen);
+  ASSERT_EQ(found["problem"], "");
+  ASSERT_EQ(found["certificate"]["walls"].size(), 5u);
+  EXPECT_EQ(found["certificate"]["walls"][0]["places"]["at_m"].size(), 1u);
+  const auto nowhere = asked(
+      "fay",
+      {{"effort", "first"}, {"entry_m", {-0.037, 0.04, 0.02}}, {"target_m", {-0.037, 0.0, 0.02}}});
+  EXPECT_EQ(json(nowhere)["certificate"], nullptr);
+  EXPECT_NE(json(nowhere)["problem"], "");
+  EXPECT_EQ(asked("fay", {{"effort", "some"}}).status, 400);
+  EXPECT_EQ(asked("tom", {{"effort", "first"}}).status, 403);
+}
+
+/// A case as it was made before there were certificates.
+TEST_F(CaseMaking, AnOldCaseIsMarkedOnceItWasTried) {
+  const std::string id = made(plan({{"volume", "released"}, {"title", "made"}}));
+  const auto felt = [&](const std::string& of) {
+    const core::Json listed = json(get("fay", "/cases"));
+    for (const core::Json& one : listed["cases"])
+      if (one["id"] == of) return one["felt"].get<std::string>();
+    return std::string("absent");
+  };
+  const auto facts = jobs::case_facts(store_, objects_, id);
+  EXPECT_EQ(felt(id), *facts->definition.certified ? "told" : "not_told");
+  EXPECT_TRUE(facts->d_prime);
+
+  const auto part =
+      store_.read([&](store::Reading& tx) { return store::case_part(tx, id, cases::kVolumePart); });
+  const auto drilled = volume::VolumeFile::open(objects_.path_of((*part)->sha256))->read_all();
+  for (const bool breached : {true, false}) {
+    cases::NewCase old{.definition = facts->definition,
+                       .truth = breached ? *facts->truth : cases::Truth{},
+                       .volume = *drilled,
+                       .meta = {},
+                       .draw = {}};
+    old.definition.title = breached ? "old" : "old and whole";
+    old.definition.certified.reset();
+    const auto bundle = folder_.path() / (breached ? "old" : "whole");
+    ASSERT_TRUE(cases::write_case(bundle, std::move(old), backend_.secrets.case_key()));
+    const auto published = jobs::publish_bundle(store_, objects_, bundle);
+    ASSERT_TRUE(published) << published.error().what;
+    EXPECT_EQ(felt(*published), "untried");
+    ASSERT_TRUE(jobs::certify_case(store_, objects_, *published));
+    const auto tried = jobs::case_facts(store_, objects_, *published);
+    EXPECT_EQ(tried->d_prime.has_value(), breached);
+    EXPECT_EQ(get("fay", "/cases/" + *published + "/parts/certificate.json").status,
+              breached ? 200 : 404);
+    EXPECT_EQ(ask(request("GET", "/api/v1/cases/" + *published + "/parts/certificate.json",
+                          station("token-1")))
+                  .status,
+              breached ? 403 : 404);
+    if (breached)
+      EXPECT_TRUE(felt(*published) == "told" || felt(*published) == "not_told");
+    else
+      EXPECT_EQ(felt(*published), "not_known");
+  }
 }
 
 TEST_F(CaseMaking, AMakingThatFailsSaysWhyAndLeavesNoCase) {

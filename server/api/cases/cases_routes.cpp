@@ -25,7 +25,8 @@ core::Result<http::Response> list_cases(const Call& call) {
                     {"made_utc_us", c.made_utc_us},
                     {"trials", c.trials},
                     {"retired", c.retired},
-                    {"planned", c.planned}});
+                    {"planned", c.planned},
+                    {"felt", name(c.felt)}});
   return json_response({{"cases", list}});
 }
 
@@ -108,7 +109,11 @@ std::vector<RouteInfo> cases_routes() {
             {"trials", schema::integer("1", "Number of trials on this case on this server")},
             {"retired", schema::truth("True if new assignments cannot use the case")},
             {"planned", schema::truth("True if the bone is whole: the trainee first drills the "
-                                      "channel, then palpates it")}})},
+                                      "channel, then palpates it")},
+            {"felt", schema::one_of<store::Felt>(
+                         "Whether the case's breaches can be told by feel, by its certificate: "
+                         "told (every one), not_told, not_known (its bone does not say), untried "
+                         "(a job will try it)")}})},
       {"CaseList", schema::object({{"cases", schema::array(schema::ref("CaseSummary"),
                                                            "Published cases, newest first")}})}};
   list.handle = list_cases;

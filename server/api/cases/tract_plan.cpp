@@ -54,7 +54,8 @@ Json no_tract_json(const cases::CarvingPlan& plan, const std::string& problem) {
           {"tract", Json()},
           {"walls", Json::array()},
           {"breach", Json()},
-          {"problems", Json::array({problem})}};
+          {"problems", Json::array({problem})},
+          {"warnings", Json::array()}};
 }
 
 Json tract_json(const volume::Volume& ct, const volume::TransferFunction& transfer,
@@ -64,6 +65,7 @@ Json tract_json(const volume::Volume& ct, const volume::TransferFunction& transf
   if (!placed) return no_tract_json(plan, placed.error().what);
   Json out = no_tract_json(plan, "");
   out["problems"] = Json::array();
+  out["warnings"] = placed->warnings;
   out["side"] = placed->left_side() ? "left" : "right";
   out["tract"] = tract_of(placed->tract);
   std::optional<volume::Volume> filled;

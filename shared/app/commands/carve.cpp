@@ -23,11 +23,13 @@ using core::Errc;
 using core::Error;
 using core::Json;
 
+constexpr const char* kEvery = "every";  // of --breach
+
 struct CarveOptions {
   std::string volume, out, title, source, model, key, png;
   std::string entry, target, length, radius = "1.5", midline;
   std::string breach, breach_depth, breach_at, spacing = "0.35", margin = "20";
-  std::string preparation = "published", envelope;
+  std::string preparation = "published", envelope, may_move;
   int envelope_label = 1;
   bool no_channel = false, certified = false;
   bool json = false;
@@ -50,12 +52,18 @@ core::Result<void> read_breach(const CarveOptions& o, cases::CarvingPlan& plan) 
         return Error{Errc::bad_input, fmt::format("{}: needs --breach WALL", option)};
     return {};
   }
+  if (o.breach == kEvery) {
+    if (!o.breach_at.empty() || !o.breach_depth.empty() || !o.png.empty())
+      return Error{Errc::bad_input,
+                   "--breach every: --breach-at, --breach-depth and --png are of one case"};
+    return {};
+  }
   const auto wall = core::from_name<volume::Wall>(o.breach);
   if (!wall)
-    return Error{
-        Errc::bad_input,
-        fmt::format("--breach: '{}': medial, lateral, superior, inferior or anterior is expected",
-                    o.breach)};
+    return Error{Errc::bad_input,
+                 fmt::format("--breach: '{}': medial, lateral, superior, inferior, anterior or "
+                             "every is expected",
+                             o.breach)};
   plan.breach = volume::BreachPlan{.wall = *wall};
   TRY(read_length(o.breach_depth, "--breach-depth", plan.breach->depth_m));
   return read_length(o.breach_at, "--breach-at", plan.breach->at_m);
@@ -87,6 +95,7 @@ core::Result<cases::CarvingPlan> plan_of(const CarveOptions& o) {
   TRY(read_length(o.midline, "--midline-x", plan.midline_x_m));
   TRY(read_length(o.spacing, "--spacing", plan.spacing_m));
   TRY(read_length(o.margin, "--margin", plan.margin_m));
+  TRY(read_length(o.may_move, "--may-move", plan.may_move_m));
   TRY(read_breach(o, plan));
   TRY(read_preparation(o, plan));
   plan.drilled = !o.no_channel;
@@ -139,6 +148,8 @@ Json report_of(const cases::OpenedCase& made, const cases::Made& carved) {
       {"walls", Json::array()},
       {"breach", Json()},
       {"preparation", volume::name(made.definition.preparation)},
+      {"warnings", carved.warnings},
+      {"moved_m", Json::array({carved.moved_m.x(), carved.moved_m.y()})},
       {"certificate", carved.certificate ? carved.certificate->to_json() : Json()}};
   out["midline"]["symmetry"] = carved.midline.symmetry ? Json(*carved.midline.symmetry) : Json();
   for (std::size_t k = 0; k < carved.walls.size(); ++k)
@@ -191,7 +202,11 @@ void print_text(const cases::OpenedCase& made, const cases::Made& carved) {
     fmt::print("{} breach at depth {:.1f} mm, through {:.1f} mm of bone and {:.1f} mm beyond\n",
                volume::name(breach->wall.wall), breach->wall.at_m * 1e3,
                breach->wall.thickness_m() * 1e3, breach->depth_m * 1e3);
+  if (carved.moved_m.norm() > 0.0)
+    fmt::print("moved by {:.1f} mm to medial and {:.1f} mm to superior, so that all can be told\n",
+               carved.moved_m.x() * 1e3, carved.moved_m.y() * 1e3);
   if (carved.certificate) print_certificate(*carved.certificate);
+  for (const auto& warning : carved.warnings) fmt::print("warning: {}\n", warning);
   if (!carved.drilled) fmt::print("the bone is whole: the tract is planned and not drilled\n");
   fmt::print(
       "{} x {} x {} voxels of {:.3g} x {:.3g} x {:.3g} mm; removed bone has the CT value {:g}\n",
@@ -246,6 +261,39 @@ Outcome write(const CarveOptions& o, cases::NewCase definition, const core::KeyP
   return 0;
 }
 
+/// Five cases in folders of the wall's name; all, or none.
+Outcome write_five(const CarveOptions& o, const models::PalpationModel& model,
+                   const volume_io::Imported& ct, const std::vector<cases::Made>& five) {
+  const auto key = TRY(key_of(o));
+  Json reports = Json::array();
+  for (const cases::Made& made : five) {
+    auto surroundings = cases::drilled_surroundings(ct.volume, made);
+    if (!surroundings) return about(o.volume, surroundings.error());
+    auto definition = case_of(o, made, model, ct.source, std::move(*surroundings));
+    const auto wall = volume::name(made.breach->wall.wall);
+    definition.definition.title += fmt::format(", {} breach", wall);
+    const auto folder = std::filesystem::path(o.out) / wall;
+    auto written = cases::write_case(folder, std::move(definition), key,
+                                     core::terminal_progress(std::string(wall)));
+    std::error_code ignored;
+    if (!written) std::filesystem::remove_all(o.out, ignored);
+    if (!written) return written.error();
+    o.json ? reports.push_back(report_of(*written, made)) : print_text(*written, made);
+  }
+  if (o.json) std::puts(reports.dump(2).c_str());
+  return 0;
+}
+
+Outcome run_five(const CarveOptions& o, const models::PalpationModel& model,
+                 const volume_io::Imported& ct, const cases::CarvingPlan& plan) {
+  const auto five = cases::make_five(ct.volume, model, plan, core::terminal_progress("carving"));
+  if (!five) return about(o.volume, five.error());
+  std::error_code failure;
+  if (!std::filesystem::create_directory(o.out, failure))
+    return Error{Errc::io, fmt::format("{}: {}", o.out, failure.message())};
+  return write_five(o, model, ct, *five);
+}
+
 Outcome run_carve(const CarveOptions& o) {
   const auto plan = TRY(plan_of(o));
   const auto model = TRY(model_of(o));
@@ -253,6 +301,7 @@ Outcome run_carve(const CarveOptions& o) {
     return Error{Errc::conflict,
                  fmt::format("{}: exists already; remove it or choose another name", o.out)};
   const auto ct = TRY(volume_io::read_volume(o.volume, core::terminal_progress("reading")));
+  if (o.breach == kEvery) return run_five(o, model, ct, plan);
   const auto carved = cases::make(ct.volume, model, plan, core::terminal_progress("carving"));
   if (!carved) return about(o.volume, carved.error());
   if (o.certified && !carved->certificate->passes())
@@ -283,7 +332,8 @@ void add_options(CLI::App& app, CarveOptions& o) {
   app.add_option("--radius", o.radius, "radius of the drill, in mm (default 1.5)");
   app.add_option(
       "--breach", o.breach,
-      "wall with a breach: medial, lateral, superior, inferior or anterior (default: no breach)");
+      "wall with a breach: medial, lateral, superior, inferior or anterior (default: no breach); "
+      "every: five cases of equal difficulty, one a wall, in folders of DIR named by the wall");
   app.add_option("--breach-depth", o.breach_depth,
                  "depth of the breach beyond the bone, in mm (default 3)");
   app.add_option("--breach-at", o.breach_at,
@@ -308,6 +358,9 @@ void add_options(CLI::App& app, CarveOptions& o) {
                  "label map of the vertebra from another program, with --preparation filled "
                  "(default: the envelope is found in the CT)");
   app.add_option("--envelope-label", o.envelope_label, "label of the vertebra in it (default 1)");
+  app.add_option("--may-move", o.may_move,
+                 "if a breach of some wall could not be told by feel: how far entry and target may "
+                 "be moved together across the axis to where all can, in mm (default 0)");
   app.add_flag("--certified", o.certified,
                "refuse a case in which a breach of some wall could not be told by feel");
   app.add_option("--out", o.out, "folder of the case; it must not exist")->required();

@@ -83,18 +83,9 @@ Outcome show(const CaseOptions& o) {
 core::Result<Json> certificate_of(const cases::OpenedCase& opened) {
   if (opened.definition.certified) return cases::read_certificate(opened);
   const auto truth = TRY(cases::read_truth(opened));
-  if (!truth.breached)
-    return core::Error{core::Errc::not_found,
-                       "this case was made without a certificate and has no breach to try: make "
-                       "it anew from its CT"};
   const auto file = TRY(volume::VolumeFile::open(opened.folder / cases::kVolumePart));
   const auto drilled = TRY(file.read_all());
-  const auto& made = opened.definition;
-  const auto wall = TRY(cases::certify_drilled(drilled, made.model, made.tract, *truth.breached,
-                                               made.tract.depth_of(*truth.breach_m)));
-  cases::Certificate out{.preparation = made.preparation};
-  out.walls.push_back(wall);
-  return out.to_json();
+  return TRY(cases::certify_drilled(drilled, opened.definition, truth)).to_json();
 }
 
 void print_wall(const Json& wall) {

@@ -143,6 +143,9 @@ core::Result<cases::OpenedCase> add_case(const TrialOptions& o, metrics::Subject
   if (std::filesystem::exists(opened->folder / cases::kTruthPart)) {
     const auto truth = TRY(cases::read_truth(*opened));
     subject.truth = metrics::Truth{.breached = truth.breached};
+    const auto certificate = cases::read_certificate(*opened);
+    if (certificate && truth.breached)
+      subject.truth->d_prime = cases::d_prime_of(*certificate, *truth.breached);
   }
   return opened;
 }

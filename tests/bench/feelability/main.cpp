@@ -39,8 +39,27 @@ void row(const std::string& name, const core::Result<cases::Made>& made) {
   if (!made) return fmt::print("{:28} {}\n", name, made.error().what);
   fmt::print("{:28}", name);
   for (const auto& wall : made->certificate->walls) fmt::print("{}", cell(wall));
-  fmt::print(" {:4.1f} mm\n", made->tract.length_m * 1e3);
+  fmt::print(" {:4.1f} mm{}\n", made->tract.length_m * 1e3,
+             made->moved_m.norm() > 0.0
+                 ? fmt::format(", moved {:.1f} mm to medial, {:.1f} to superior",
+                               made->moved_m.x() * 1e3, made->moved_m.y() * 1e3)
+                 : "");
   std::fflush(stdout);
+}
+
+/// Every place that was tried, for whoever asks why a wall fails.
+void print_places(const core::Result<cases::Made>& made) {
+  if (!made) return;
+  for (const auto& wall : made->certificate->walls)
+    for (const auto& place : wall.places)
+      fmt::print(
+          "    {:9} {:4.0f} mm  K {:5.2f}  B {:5.2f}  FA {:5.2f} ({} {:.0f} mm)  lean {:.2f} "
+          "mm {} {}\n",
+          name(wall.wall), place.at_m * 1e3, place.told.k.value_or(NAN), place.told.b.value_or(NAN),
+          place.told.fa.value_or(NAN), place.told.fa_wall ? name(*place.told.fa_wall) : "",
+          place.told.fa_at_m * 1e3, place.told.lean_m * 1e3,
+          place.told.motion ? name(*place.told.motion) : "",
+          place.told.contrast ? name(*place.told.contrast) : "");
 }
 
 /// Right answers against d′, over cases.
@@ -85,6 +104,10 @@ void let_palpate(const bench::Pedicle& pedicle, Preparation preparation, std::op
   std::fflush(stdout);
 }
 
+bool flag(int argc, char** argv, const char* name) {
+  return std::any_of(argv + 1, argv + argc, [&](const char* a) { return !std::strcmp(a, name); });
+}
+
 double option(int argc, char** argv, const char* name, double otherwise) {
   for (int k = 1; k + 1 < argc; ++k)
     if (std::strcmp(argv[k], name) == 0) return std::atof(argv[k + 1]);
@@ -104,14 +127,20 @@ int main(int argc, char** argv) {
          filled_pedicles = 0.0, passed = 0.0, walls = 0.0;
   const auto all = bench::pedicles();
   const auto count = std::size_t(option(argc, argv, "--pedicles", double(all.size())));
-  for (std::size_t n = 0; n < std::min(count, all.size()); ++n) {
+  const auto first = std::size_t(option(argc, argv, "--from", 0.0));
+  for (std::size_t n = first; n < std::min(count, all.size()); ++n) {
     const auto& pedicle = all[n];
     const auto& ct = bench::ct_of(pedicle);
-    row(pedicle.name, cases::make(ct, published_model(), pedicle.plan(Preparation::published)));
+    fmt::print("{}\n", pedicle.name);
+    if (!flag(argc, argv, "--filled-only"))
+      row("  published", cases::make(ct, published_model(), pedicle.plan(Preparation::published)));
     const double start_s = bench::wall_s();
-    const auto filled = cases::make(ct, published_model(), pedicle.plan(Preparation::filled));
+    auto plan = pedicle.plan(Preparation::filled);
+    plan.may_move_m = option(argc, argv, "--move", 2.0) * 1e-3;
+    const auto filled = cases::make(ct, published_model(), plan);
     slowest_s = std::max(slowest_s, bench::wall_s() - start_s);
     row("  filled", filled);
+    if (flag(argc, argv, "--places")) print_places(filled);
     if (!filled) continue;
     filled_pedicles += 1.0;
     for (const auto& wall : filled->certificate->walls) {

@@ -17,6 +17,7 @@ export * from './backup-queries';
 export * from './trainee-queries';
 export * from './cohort-queries';
 export type { CohortTable } from './cohort-table';
+export { kFeltSigns } from './felt';
 export * from './teaching-queries';
 export { kKinds, kReleases, kWalls } from './teaching-schemas';
 export type * from './teaching-schemas';

@@ -11,9 +11,11 @@ import {
   caseListSchema,
   caseManifestSchema,
   caseTruthSchema,
+  certificateSchema,
   commentListSchema,
   makingListSchema,
   makingSchema,
+  plannedCertificateSchema,
   plannedTractSchema,
   referenceListSchema,
   referenceWaySchema,
@@ -95,6 +97,22 @@ export const plannedTractQuery = (volume: string, request: TractRequest | null) 
     placeholderData: keepPreviousData,
   });
 
+/** The server calls off an older question of the same person: then the tract was moved, and nobody waits for it. */
+export const plannedCertificateQuery = (volume: string, request: TractRequest | null, effort: 'first' | 'whole') =>
+  queryOptions({
+    queryKey: ['planned-certificate', volume, request, effort],
+    queryFn: ({ signal }) =>
+      requestJson(address('/api/v1/volumes/{id}/certificate', { id: volume }), plannedCertificateSchema, {
+        ...posted,
+        body: { ...request, effort },
+        signal,
+        timeout_ms: 120_000,
+      }),
+    enabled: request !== null,
+    staleTime: Infinity,
+    retry: false,
+  });
+
 export const casesQuery = queryOptions({
   queryKey: ['cases'],
   queryFn: ({ signal }) => requestJson(address('/api/v1/cases', {}), caseListSchema, { signal }),
@@ -111,6 +129,16 @@ export const caseTruthQuery = (id: string) =>
     queryFn: ({ signal }) =>
       requestJson(address('/api/v1/cases/{id}/parts/{name}', { id, name: 'truth.json' }), caseTruthSchema, { signal }),
     staleTime: Infinity,
+  });
+export const caseCertificateQuery = (id: string) =>
+  queryOptions({
+    queryKey: ['case-certificate', id],
+    queryFn: ({ signal }) =>
+      requestJson(address('/api/v1/cases/{id}/parts/{name}', { id, name: 'certificate.json' }), certificateSchema, {
+        signal,
+      }),
+    staleTime: Infinity,
+    retry: false,
   });
 export const makeCase = (newCase: NewCase) =>
   requestJson(address('/api/v1/cases', {}), makingSchema, { ...posted, body: newCase });

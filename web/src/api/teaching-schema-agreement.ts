@@ -15,6 +15,7 @@ import type {
   commentListSchema,
   makingListSchema,
   makingSchema,
+  plannedCertificateSchema,
   plannedTractSchema,
   referenceListSchema,
   referenceWaySchema,
@@ -30,6 +31,7 @@ export interface TeachingAgreed {
   readonly cases: Takes<typeof caseListSchema, Served['CaseList']>;
   readonly making: Takes<typeof makingSchema, Served['CaseMaking']>;
   readonly tract: Takes<typeof plannedTractSchema, Served['PlannedTract']>;
+  readonly certificate: Takes<typeof plannedCertificateSchema, Served['PlannedCertificate']>;
   readonly scenarios: Takes<typeof scenarioListSchema, Served['ScenarioVersions']>;
   readonly check: Takes<typeof scenarioCheckSchema, Served['ScenarioCheck']>;
   readonly assignments: Takes<typeof assignmentListSchema, Served['Assignments']>;
@@ -50,6 +52,7 @@ export const kTeachingAgreed: TeachingAgreed = {
   cases: true,
   making: true,
   tract: true,
+  certificate: true,
   scenarios: true,
   check: true,
   assignments: true,

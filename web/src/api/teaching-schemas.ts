@@ -27,6 +27,7 @@ export const caseSummarySchema = v.object({
   trials: count,
   retired: v.boolean(),
   planned: v.boolean(),
+  felt: v.picklist(['untried', 'told', 'not_told', 'not_known']),
 });
 export const caseListSchema = v.object({ cases: v.array(caseSummarySchema) });
 /** Of the signed manifest and of the truth what a page shows. */
@@ -36,12 +37,33 @@ export const caseManifestSchema = v.object({
   made_utc_us: inUtc,
   tract: tractSchema,
   channel: v.optional(v.literal('planned')),
+  preparation: v.optional(v.picklist(['published', 'filled']), 'published'),
 });
 export const caseTruthSchema = v.object({
   breached: v.nullish(wall, null),
   breach_m: v.nullish(point, null),
   breach_depth_m: v.optional(inMetres, 0),
   wall_thickness_m: v.optional(inMetres, 0),
+});
+
+const dPrime = v.nullable(finite);
+/** What an observer can tell of a wall; `places` is absent in certificates of before. */
+export const wallCertificateSchema = v.object({
+  wall,
+  passes: v.boolean(),
+  at_m: v.nullable(inMetres),
+  k: dPrime,
+  b: dPrime,
+  fa: dPrime,
+  end_force_N: v.nullable(finite),
+  why_not: v.nullable(v.string()),
+  places: v.optional(v.object({ at_m: v.array(finite), k: v.array(dPrime), b: v.array(dPrime), fa: v.array(dPrime) })),
+});
+export const certificateSchema = v.object({ passes: v.boolean(), walls: v.array(wallCertificateSchema) });
+export const plannedCertificateSchema = v.object({
+  certificate: v.nullable(certificateSchema),
+  warning: v.string(),
+  problem: v.string(),
 });
 
 export const plannedWallSchema = v.object({
@@ -69,6 +91,7 @@ export const plannedTractSchema = v.object({
     }),
   ),
   problems: v.array(v.string()),
+  warnings: v.array(v.string()),
 });
 export const makingSchema = v.object({
   id: v.string(),
@@ -211,6 +234,8 @@ export const referenceWaySchema = v.object({
 export type SourceVolume = v.InferOutput<typeof sourceVolumeSchema>;
 export type CaseSummary = v.InferOutput<typeof caseSummarySchema>;
 export type CaseTruth = v.InferOutput<typeof caseTruthSchema>;
+export type Certificate = v.InferOutput<typeof certificateSchema>;
+export type WallCertificate = v.InferOutput<typeof wallCertificateSchema>;
 export type PlannedTract = v.InferOutput<typeof plannedTractSchema>;
 export type PlannedWall = v.InferOutput<typeof plannedWallSchema>;
 export type Making = v.InferOutput<typeof makingSchema>;

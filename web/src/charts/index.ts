@@ -24,4 +24,5 @@ export {
   type Tile,
 } from './tiles';
 export { TractView } from './tract-view';
+export { bandLevel, WallBands, type SideBands } from './wall-bands';
 export { WallMap } from './wall-map';

@@ -7,6 +7,7 @@ import vtkImageMarchingCubes from '@kitware/vtk.js/Filters/General/ImageMarching
 import vtkActor from '@kitware/vtk.js/Rendering/Core/Actor';
 import vtkMapper from '@kitware/vtk.js/Rendering/Core/Mapper';
 import { makeSlice } from './slice';
+import { withoutSpecks } from './specks';
 import { kPerMetre, scaled, type SceneBone, type SceneTract, type Vec3 } from './types';
 
 /** A tenth of full opacity: where bone begins to resist. The cancellous inside of a vertebra hardly reaches a half. */
@@ -32,9 +33,13 @@ function surfaceOf(bone: SceneBone): vtkPolyData {
   const image = vtkImageData.newInstance();
   image.setDimensions([bone.dims[0], bone.dims[1], bone.dims[2]]);
   image.setSpacing([...scaled(bone.spacing_m)] as [number, number, number]);
-  image
-    .getPointData()
-    .setScalars(vtkDataArray.newInstance({ name: 'opacity', numberOfComponents: 1, values: bone.opacity }));
+  image.getPointData().setScalars(
+    vtkDataArray.newInstance({
+      name: 'opacity',
+      numberOfComponents: 1,
+      values: withoutSpecks(bone.opacity, bone.dims, kSurface),
+    }),
+  );
   const cubes = vtkImageMarchingCubes.newInstance({ contourValue: kSurface, computeNormals: true, mergePoints: true });
   cubes.setInputData(image);
   const surface = cubes.getOutputData();

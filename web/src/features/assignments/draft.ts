@@ -9,6 +9,7 @@ export interface Item {
   readonly case_id?: string;
   readonly tuned?: string;
   /** Its bone is whole. */ readonly whole?: boolean;
+  /** Why its breaches may not be felt; absent where they can. */ readonly sign?: string;
 }
 export interface Chosen extends Item {
   readonly blind: string;

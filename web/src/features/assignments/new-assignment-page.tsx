@@ -1,7 +1,15 @@
 import { useMutation, useQuery, useQueryClient } from '@tanstack/react-query';
 import { useState, type FormEvent } from 'react';
 import { Link, useLocation, useSearch } from 'wouter';
-import { addAssignment, assignmentsQuery, casesQuery, cohortQuery, cohortsQuery, scenariosQuery } from '@/api';
+import {
+  addAssignment,
+  assignmentsQuery,
+  casesQuery,
+  cohortQuery,
+  cohortsQuery,
+  kFeltSigns,
+  scenariosQuery,
+} from '@/api';
 import { Badge, Button, Card, Field, Notice, Select, Skeleton, useTitle } from '@/ui';
 import { formatCount, timeZone } from '@/units';
 import styles from './assignments.module.css';
@@ -23,12 +31,13 @@ function useItems(): { items: Item[] | undefined; failed: Error | null; retry: (
   const items: Item[] = [
     ...cases.data.cases
       .filter(({ retired }) => !retired)
-      .map(({ id, title, planned }) => ({
+      .map(({ id, title, planned, felt }) => ({
         key: `case ${id}`,
         title,
         rig: 'palpation' as const,
         case_id: id,
         whole: planned,
+        ...(planned || felt === 'told' ? {} : { sign: kFeltSigns[felt].text }),
       })),
     ...scenarios.data.scenarios
       .filter(({ published }) => published)
@@ -64,6 +73,7 @@ function CasesField({
               <span>{item.title}</span>
             </label>
             <Badge>{item.whole ? kDrillThenPalpate : item.rig}</Badge>
+            {item.sign === undefined ? null : <Badge tone="warn">{item.sign}</Badge>}
             <input
               className={styles.blind}
               aria-label={`Blind name of ${item.title}`}

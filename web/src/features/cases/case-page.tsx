@@ -1,11 +1,12 @@
 import { useQuery } from '@tanstack/react-query';
 import { useState } from 'react';
 import { Link } from 'wouter';
-import { ApiError, caseQuery, caseTruthQuery, previewQuery, type CaseTruth } from '@/api';
+import { ApiError, caseQuery, casesQuery, caseTruthQuery, previewQuery, type CaseTruth } from '@/api';
 import { PlanView } from '@/charts';
 import { Button, Card, Facts, Notice, Skeleton, usePalette, useTitle } from '@/ui';
 import { formatDateTime, formatLength, metre } from '@/units';
 import styles from './cases.module.css';
+import { CaseCertificate, FeltSign } from './certificate';
 
 function truthFacts(truth: CaseTruth): { name: string; value: string }[] {
   if (truth.breached === null) return [{ name: 'Breach', value: 'none' }];
@@ -53,6 +54,7 @@ export function CasePage({ id }: { readonly id: string }) {
   const preview = useQuery(previewQuery(id));
   const palette = usePalette();
   const found = query.data;
+  const summary = useQuery(casesQuery).data?.cases.find((one) => one.id === id);
   useTitle(found?.title ?? 'Case');
   return (
     <div className={styles.page}>
@@ -78,12 +80,18 @@ export function CasePage({ id }: { readonly id: string }) {
               { name: 'Source', value: found.source },
               { name: 'Created', value: formatDateTime(found.made_utc_us) },
               { name: 'Channel', value: found.channel === 'planned' ? 'trainee drills, then palpates' : 'pre-drilled' },
+              { name: 'Bone', value: found.preparation === 'filled' ? 'filled' : 'published: marrow is not felt' },
               {
                 name: 'Tract',
                 value: `${formatLength(found.tract.length_m)} long, ${formatLength(metre(2 * found.tract.radius_m))} wide`,
               },
             ]}
           />
+          {summary ? (
+            <p>
+              <FeltSign {...summary} />
+            </p>
+          ) : null}
           <div className={styles.pair}>
             <Card title="Tract in the bone">
               {preview.isError ? (
@@ -114,6 +122,7 @@ export function CasePage({ id }: { readonly id: string }) {
             </Card>
             <Truth id={id} />
           </div>
+          {found.channel === 'planned' ? null : <CaseCertificate id={id} length_m={found.tract.length_m} />}
         </>
       ) : null}
     </div>

@@ -14,6 +14,7 @@ import {
 import { Badge, Button, Card, DataTable, Notice, Progress, Table, useTitle } from '@/ui';
 import { formatCount, formatDateTime, formatShare, share } from '@/units';
 import styles from './cases.module.css';
+import { FeltSign } from './certificate';
 
 function Volumes() {
   const query = useQuery(sourceVolumesQuery);
@@ -153,7 +154,7 @@ export function CasesPage() {
                       <Badge>retired</Badge>
                     ) : (
                       <>
-                        <Badge tone="good">available</Badge>
+                        <Badge tone="good">available</Badge> <FeltSign {...one} />
                         {one.planned ? (
                           <>
                             {' '}

@@ -2,7 +2,7 @@ import { useState } from 'react';
 import { kWalls, type Vec3 } from '@/api';
 import { Field, Select } from '@/ui';
 import styles from './cases.module.css';
-import { kBreachDepth_mm, type Breach, type End, type Plan } from './plan';
+import { kBreachDepth_mm, type Breach, type End, type Plan, type Preparation } from './plan';
 
 const kAxes = ['x (left)', 'y (back)', 'z (up)'] as const;
 const inMillimetres = (value: number | undefined | null) =>
@@ -97,11 +97,13 @@ export function BreachFields({
   length_m,
   onBreach,
   onWhole,
+  onPreparation,
 }: {
   readonly plan: Plan;
   readonly length_m: number | null;
   readonly onBreach: (breach: Breach | null) => void;
   readonly onWhole: (whole: boolean) => void;
+  readonly onPreparation: (preparation: Preparation) => void;
 }) {
   const { breach } = plan;
   const longest_mm = Math.max(1, Math.floor((length_m ?? 0.1) * 1000));
@@ -115,6 +117,15 @@ export function BreachFields({
           { value: 'planned', text: 'trainee drills' },
         ]}
         onChange={(event) => onWhole(event.target.value === 'planned')}
+      />
+      <Select
+        label="Bone"
+        value={plan.preparation}
+        options={[
+          { value: 'filled', text: 'filled: all of it is felt' },
+          { value: 'published', text: 'published: marrow is not felt' },
+        ]}
+        onChange={(event) => onPreparation(event.target.value === 'published' ? 'published' : 'filled')}
       />
       {plan.whole ? null : (
         <Select
@@ -144,7 +155,7 @@ export function BreachFields({
       ) : null}
       {breach && breach.wall !== 'anterior' ? (
         <Millimetres
-          label="At depth, mm (empty: thinnest point)"
+          label="At depth, mm (empty: where it is told best)"
           value_m={breach.at_m}
           min={0}
           max={longest_mm}

@@ -1,9 +1,7 @@
-import { useMutation, useQuery, useQueryClient } from '@tanstack/react-query';
-import { useEffect, useReducer, useState, type FormEvent } from 'react';
-import { Link, useLocation, useSearch } from 'wouter';
+import { useQuery } from '@tanstack/react-query';
+import { useEffect, useReducer, useState } from 'react';
+import { Link, useSearch } from 'wouter';
 import {
-  makeCase,
-  makingsQuery,
   plannedTractQuery,
   sourceVolumesQuery,
   volumeBoneQuery,
@@ -14,11 +12,13 @@ import {
   type Window,
 } from '@/api';
 import { PlanView } from '@/charts';
-import { Button, Card, Field, Notice, Select, Skeleton, usePalette, useTitle, useSettled } from '@/ui';
+import { Button, Card, Notice, Select, Skeleton, usePalette, useTitle, useSettled } from '@/ui';
 import { formatLength } from '@/units';
 import styles from './cases.module.css';
+import { PlannedCertificate } from './certificate';
 import { BreachFields, PointFields } from './fields';
-import { caseOf, draw, fromAddress, toAddress, requestOf, type End, type Plan } from './plan';
+import { Make } from './make';
+import { draw, fromAddress, toAddress, requestOf, type End, type Plan } from './plan';
 import { boundsOf, Slices } from './slices';
 import { Walls } from './walls';
 
@@ -55,12 +55,17 @@ function Findings({
         {looking ? 'Analysing the bone…' : ''}
       </p>
     );
-  const { breach, problems } = found;
+  const { breach, problems, warnings } = found;
   return (
     <div className={styles.findings} data-part="findings" data-late={looking || undefined} role="status">
       {problems.map((problem) => (
         <p key={problem} className={styles.problem}>
           {problem}
+        </p>
+      ))}
+      {warnings.map((warning) => (
+        <p key={warning} data-part="warning">
+          Warning: {warning}
         </p>
       ))}
       {found.tract ? (
@@ -82,45 +87,6 @@ function Findings({
         </p>
       ) : null}
     </div>
-  );
-}
-
-function Make({ volume, plan, ready }: { readonly volume: string; readonly plan: Plan; readonly ready: boolean }) {
-  const client = useQueryClient();
-  const [, go] = useLocation();
-  const [title, setTitle] = useState('');
-  const request = requestOf(plan);
-  const made = useMutation({
-    mutationFn: makeCase,
-    onSuccess: async () => {
-      await client.invalidateQueries({ queryKey: makingsQuery.queryKey });
-      go('/cases');
-    },
-  });
-  const submit = (event: FormEvent) => {
-    event.preventDefault();
-    if (request) made.mutate(caseOf(request, volume, title.trim()));
-  };
-  return (
-    <form className={styles.make} onSubmit={submit}>
-      <Field
-        label="Title (not shown to trainees)"
-        value={title}
-        required
-        maxLength={200}
-        placeholder="L3 left, medial breach"
-        onChange={(event) => setTitle(event.target.value)}
-      />
-      <Button look="solid" type="submit" disabled={!ready || request === null || title.trim() === '' || made.isPending}>
-        {made.isPending ? 'Submitting…' : 'Create case'}
-      </Button>
-      <p className={styles.muted}>Trainees see the blind name from the assignment instead of this title.</p>
-      {made.isError ? (
-        <Notice tone="bad" title="The case was not created.">
-          {made.error.message}
-        </Notice>
-      ) : null}
-    </form>
   );
 }
 
@@ -216,6 +182,11 @@ function Workbench({ volume, block }: { readonly volume: SourceVolume; readonly 
             )}
           </Card>
         </div>
+        {found?.tract ? (
+          <Card title="What can be felt">
+            <PlannedCertificate volume={volume.id} request={request} length_m={found.length_m} />
+          </Card>
+        ) : null}
       </div>
       <Card title="Tract" className={styles.side ?? ''}>
         <div className={styles.stack}>
@@ -241,6 +212,7 @@ function Workbench({ volume, block }: { readonly volume: SourceVolume; readonly 
             length_m={found?.length_m ?? null}
             onBreach={(breach) => step({ kind: 'change', to: { breach } })}
             onWhole={(whole) => step({ kind: 'change', to: { whole, breach: null } })}
+            onPreparation={(preparation) => step({ kind: 'change', to: { preparation } })}
           />
           {answer.isError ? (
             <Notice tone="bad" title="The plan could not be checked." onRetry={() => void answer.refetch()}>

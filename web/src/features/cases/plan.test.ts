@@ -1,5 +1,5 @@
 import { describe, expect, it } from 'vitest';
-import { draw, fromAddress, kNoPlan, toAddress, requestOf, type Drawing } from './plan';
+import { draw, fiveOf, fromAddress, kNoPlan, toAddress, requestOf, type Drawing } from './plan';
 
 const empty: Drawing = { plan: kNoPlan, past: [], future: [] };
 
@@ -35,6 +35,7 @@ describe('a plan of a case', () => {
       radius_m: 0.0015,
       breach: { wall: 'medial', depth_m: 0.003, at_m: null },
       whole: false,
+      preparation: 'published',
     } as const;
     expect(fromAddress(toAddress(plan))).toEqual(plan);
   });
@@ -48,6 +49,13 @@ describe('a plan of a case', () => {
     } as const;
     expect(requestOf(plan)).toMatchObject({ channel: 'planned', breach: null });
     expect(fromAddress(toAddress(plan)).whole).toBe(true);
+  });
+  it('asks for a breach of each wall, all as hard to tell, for a set of five', () => {
+    const request = requestOf({ ...kNoPlan, entry: [0, 0, 0], target: [0, -0.04, 0] });
+    const five = request ? fiveOf(request, 'v', 'L3') : [];
+    expect(five.map(({ breach }) => breach?.wall)).toEqual(['medial', 'lateral', 'superior', 'inferior', 'anterior']);
+    expect(five.every(({ breach, preparation }) => breach?.even === true && preparation === 'filled')).toBe(true);
+    expect(five[0]?.title).toBe('L3, medial breach');
   });
   it('takes nothing from an address that is none', () => {
     expect(fromAddress('entry=1,2&target=a,b,c&breach=upwards,3')).toEqual(kNoPlan);

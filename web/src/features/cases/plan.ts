@@ -15,9 +15,18 @@ export interface Plan {
   readonly radius_m: number;
   readonly breach: Breach | null;
   /** No channel is made: trainees drill it. */ readonly whole: boolean;
+  /** How the bone is made ready: the CT's own values, or all of it felt. */ readonly preparation: Preparation;
 }
+export type Preparation = 'published' | 'filled';
 
-export const kNoPlan: Plan = { entry: null, target: null, radius_m: 0.0015, breach: null, whole: false };
+export const kNoPlan: Plan = {
+  entry: null,
+  target: null,
+  radius_m: 0.0015,
+  breach: null,
+  whole: false,
+  preparation: 'filled',
+};
 
 export interface Drawing {
   readonly plan: Plan;
@@ -63,7 +72,7 @@ const isBreachAllowed = ({ depth_m, at_m }: Breach) =>
   depth_m * 1000 >= kBreachDepth_mm.least && depth_m * 1000 <= kBreachDepth_mm.most && (at_m === null || at_m >= 0);
 
 /** The request to the server, rounded to 1 µm; null while an end is missing or a number of the breach is not allowed. */
-export function requestOf({ entry, target, radius_m, breach, whole }: Plan): TractRequest | null {
+export function requestOf({ entry, target, radius_m, breach, whole, preparation }: Plan): TractRequest | null {
   if (!entry || !target) return null;
   if (breach && !whole && !isBreachAllowed(breach)) return null;
   const tidy = (p: Vec3): [number, number, number] => [round(p[0]), round(p[1]), round(p[2])];
@@ -72,6 +81,7 @@ export function requestOf({ entry, target, radius_m, breach, whole }: Plan): Tra
     target_m: tidy(target),
     radius_m,
     channel: whole ? 'planned' : 'drilled',
+    preparation,
     breach:
       breach && !whole
         ? { wall: breach.wall, depth_m: breach.depth_m, ...(breach.at_m === null ? {} : { at_m: breach.at_m }) }
@@ -86,14 +96,22 @@ export const caseOf = (request: TractRequest, volume: string, title: string): Ne
   title,
 });
 
+/** Five cases of one tract, a breach of each wall, all as hard to tell as can be. */
+export const fiveOf = (request: TractRequest, volume: string, title: string): NewCase[] =>
+  kWalls.map((wall) => ({
+    ...caseOf(request, volume, `${title}, ${wall} breach`),
+    breach: { wall, depth_m: request.breach?.depth_m ?? 0.003, even: true },
+  }));
+
 /** The plan as part of an address, in millimetres: a link to it can be kept. */
-export function toAddress({ entry, target, radius_m, breach, whole }: Plan): string {
+export function toAddress({ entry, target, radius_m, breach, whole, preparation }: Plan): string {
   const parameters = new URLSearchParams();
   const mm = (p: Vec3) => p.map((value) => Math.round(value * 1e5) / 100).join(',');
   if (entry) parameters.set('entry', mm(entry));
   if (target) parameters.set('target', mm(target));
   if (radius_m !== kNoPlan.radius_m) parameters.set('radius', String(Math.round(radius_m * 1e5) / 100));
   if (whole) parameters.set('whole', '1');
+  if (preparation !== kNoPlan.preparation) parameters.set('bone', preparation);
   if (breach)
     parameters.set(
       'breach',
@@ -122,6 +140,7 @@ export function fromAddress(search: string): Plan {
     target: pointOf(parameters.get('target')),
     radius_m: number(parameters.get('radius'), kNoPlan.radius_m),
     whole: parameters.get('whole') === '1',
+    preparation: parameters.get('bone') === 'published' ? 'published' : 'filled',
     breach: known
       ? { wall: known, depth_m: number(depth, 0.003), at_m: at === undefined ? null : number(at, 0) }
       : null,
