@@ -293,6 +293,7 @@ core::Result<void> serve(const ServeOptions& given) {
     const Anchoring anchoring(data, options.anchor_places);
     log_line({{"what", "serving"}, {"tls", options.http.tls.has_value()}});
     server.run();
+    (*runner)->end();  // what a job writes at last is anchored too
   }
   log_line({{"what", "stopped"}});
   return {};

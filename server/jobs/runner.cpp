@@ -80,17 +80,17 @@ Runner::Runner(store::Store& store, const store::Objects& objects, Keys keys, Lo
   keeper_ = std::thread([this] { keep(); });
 }
 
-Runner::~Runner() {
+Runner::~Runner() { end(); }
+
+void Runner::end() {
   listening_.reset();
   {
     const std::lock_guard held(mutex_);
     ending_ = true;
   }
   changed_.notify_all();
-  scores_.thread.join();
-  cases_.thread.join();
-  lab_.thread.join();
-  keeper_.join();
+  for (std::thread* thread : {&scores_.thread, &cases_.thread, &lab_.thread, &keeper_})
+    if (thread->joinable()) thread->join();
 }
 
 void Runner::wake() {

@@ -44,6 +44,8 @@ class Runner {
   Runner& operator=(const Runner&) = delete;
   /// Something was queued. Safe from any thread.
   void wake();
+  /// Returns when no job runs any more; none is begun from then on.
+  void end();
 
  private:
   struct Lane {

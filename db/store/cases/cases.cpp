@@ -1,6 +1,7 @@
 #include "db/store/cases/cases.hpp"
 
 #include "core/try.hpp"
+#include "db/store/operations/jobs.hpp"
 #include "db/store/rows.hpp"
 
 namespace tractus {
@@ -62,9 +63,11 @@ core::Result<void> set_case_felt(Writing& tx, const std::string& id, Felt felt,
 }
 
 core::Result<std::vector<std::string>> untried_cases(Reading& tx) {
-  const auto rows =
-      TRY(tx.query("select id from cases where kind = ? and felt = ? order by published_utc_us, id",
-                   {name_value(trial::Rig::palpation), name_value(Felt::untried)}));
+  const auto rows = TRY(tx.query(
+      "select id from cases where kind = ? and felt = ? and not exists (select 1 from "
+      "jobs where jobs.kind = ? and jobs.subject = cases.id) "
+      "order by published_utc_us, id",
+      {name_value(trial::Rig::palpation), name_value(Felt::untried), name_value(JobKind::felt)}));
   std::vector<std::string> out;
   for (const Row& row : rows) out.push_back(row.text(0));
   return out;

@@ -58,7 +58,7 @@ core::Result<void> set_case_retired(Writing& tx, const std::string& id, bool ret
 core::Result<void> set_case_felt(Writing& tx, const std::string& id, Felt felt,
                                  const std::optional<CasePart>& certificate,
                                  std::int64_t now_utc_us);
-/// Palpation cases with a channel that nobody has tried, oldest first.
+/// Palpation cases with a channel that nobody has tried and that no job was ever made for, oldest first.
 core::Result<std::vector<std::string>> untried_cases(Reading& tx);
 core::Result<std::optional<CasePart>> case_part(Reading& tx, const std::string& case_id,
                                                 const std::string& name);
