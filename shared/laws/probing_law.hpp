@@ -37,6 +37,8 @@ struct RotaryStage {
   double viscous_Nms_per_rad = 0.02;  ///< V, the D gain
   double detent_Nm = 0.01;            ///< T, the most that a detent holds
   double detent_pitch_rad = 0.35;     ///< p
+
+  bool operator==(const RotaryStage&) const = default;
 };
 
 /// The rotary controller's gains in force at a place.

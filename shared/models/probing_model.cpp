@@ -65,6 +65,7 @@ OptionalError read_layers(Fields& base, ProbingModel& model) {
 OptionalError read_rotary(Fields& base, ProbingModel& model) {
   const Json* object = base.member("rotary", false);
   if (!object) return std::nullopt;
+  model.states_rotary = true;
   Fields fields(*object, base.where() + "/rotary");
   laws::RotaryStage& r = model.rotary;
   r.viscous_Nms_per_rad = fields.number_or("viscous_Nms_per_rad", r.viscous_Nms_per_rad, 0.0, 10.0);
@@ -100,7 +101,9 @@ Result<ProbingModel> ProbingModel::from_json(const Json& json, const std::string
   ProbingModel model;
   if (auto fault = read_identity(fields, "probing", model.name)) return *fault;
   if (auto fault = read_base(fields, model)) return *fault;
-  if (auto fault = read_fixed(fields, model.to_json(), model.fixed)) return *fault;
+  ProbingModel whole = model;  // a number may be fixed that the file does not state
+  whole.states_rotary = true;
+  if (auto fault = read_fixed(fields, whole.to_json(), model.fixed)) return *fault;
   if (auto fault = read_effects(fields, effects::probing_facts, model.effects)) return *fault;
   TRY(fields.done());
   return model;
@@ -119,17 +122,14 @@ Json ProbingModel::to_json() const {
                     {"stiffness_N_per_m", layer.stiffness_N_per_m},
                     {"damping_Ns_per_m", layer.damping_Ns_per_m},
                     {"equilibrium_m", layer.equilibrium_m}});
-  return {{"format", kModelFormat},
-          {"rig", "probing"},
-          {"name", name},
-          {"base",
-           {{"layers", std::move(list)},
-            {"rotary",
-             {{"viscous_Nms_per_rad", rotary.viscous_Nms_per_rad},
-              {"detent_Nm", rotary.detent_Nm},
-              {"detent_pitch_rad", rotary.detent_pitch_rad}}}}},
-          {"fixed", fixed},
-          {"effects", effects_to_json(effects, effects::probing_facts)}};
+  Json base{{"layers", std::move(list)}};
+  if (states_rotary || rotary != laws::RotaryStage{})
+    base["rotary"] = {{"viscous_Nms_per_rad", rotary.viscous_Nms_per_rad},
+                      {"detent_Nm", rotary.detent_Nm},
+                      {"detent_pitch_rad", rotary.detent_pitch_rad}};
+  return {{"format", kModelFormat}, {"rig", "probing"},
+          {"name", name},           {"base", std::move(base)},
+          {"fixed", fixed},         {"effects", effects_to_json(effects, effects::probing_facts)}};
 }
 
 Result<Model> model_from_json(const Json& json, const std::string& where) {

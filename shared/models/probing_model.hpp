@@ -22,6 +22,8 @@ struct ProbingModel {
   std::vector<std::string> fixed;  ///< JSON pointers of base parameters that a fit leaves alone
   std::vector<effects::EffectInstance> effects = {};  ///< in the file's order
   std::vector<std::string> remarks = {};              ///< what reading mended, for people
+  bool states_rotary =
+      false;  ///< the file has numbers of the rotary stage, else they are the rig's usual ones
 
   /// @param where  leads every message, as "model.json: ". Errors: bad_input naming the field, the
   /// law's own refusals among them; another rig and every effect are refused by name.

@@ -15,6 +15,7 @@
 
 #include "core/try.hpp"
 #include "core/words.hpp"
+#include "station/uplink/server.hpp"
 
 namespace tractus {
 namespace uplink {

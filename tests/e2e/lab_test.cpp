@@ -9,6 +9,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <numbers>
 #include <random>
 #include <stdexcept>
 
@@ -75,9 +76,11 @@ void make_set(const fs::path& folder, double friction_N) {
     for (int k = 0; k < kRate_Hz * kSeconds; ++k) {
       const double t = double(k) / kRate_Hz, x = depth_m(trial, t), v = speed_m_s(trial, t);
       const double f = kStiffness * x + kDamping * v + friction_N * (v > 0.0 ? 1.0 : -1.0);
-      const double theta = 2.0 * t + 0.3 * std::sin(2.0 * t);
+      const double theta = 2.0 * t + 0.3 * std::sin(2.0 * t), omega = 2.0 + 0.6 * std::cos(2.0 * t);
+      const double torque =  // of the rig's usual turning stage, as the model has it
+          0.02 * omega + 0.01 * std::sin(2.0 * std::numbers::pi * theta / 0.35);
       csv << fmt::format("{},{},{},{},{}\n", t, x + 5e-7 * noise(random), theta,
-                         f + kNoise_N * noise(random), 0.02 + 0.001 * noise(random));
+                         f + kNoise_N * noise(random), torque + 0.001 * noise(random));
     }
     trials += fmt::format(R"({}{{"id":"trial{}","file":"trial{}.csv","operator":"S1"}})",
                           trial ? "," : "", trial + 1, trial + 1);

@@ -123,6 +123,19 @@ Json diagnosis_schema() {
       {{"between", array(text("identifier of an effect"), "effects that it would distinguish")},
        {"recording", text("the recording to make")},
        {"expected_gain", nullable(number("1", "expected log Bayes factor"))}});
+  const Json base = object({{"rmse", figure("root mean square error of the supplied model")},
+                            {"held_out_rmse", figure("the same on trials that were not fitted")},
+                            {"noise_floor", figure("error that a true model would have")}});
+  const Json torque = object(
+      {{"primary", text("name of the judged channel: tz_Nm")},
+       {"verdict", text("the verdict on the torque alone")},
+       {"headline", text("that verdict as a sentence")},
+       {"detail", text("a sentence with its figures")},
+       {"probability", share("probability of that answer")},
+       {"base", base},
+       {"effects", array(effect, "effects that are missing about the probe's axis")},
+       {"ranking", array(ref("RankedEffect"), "candidates about the axis, most probable first")},
+       {"steps", array(step, "fall of the torque's error as the effects are added")}});
   return object(
       {{"format", text("tractus-diagnosis/1")},
        {"verdict", one_of({"complete", "missing", "partly", "unexplained"},
@@ -131,15 +144,14 @@ Json diagnosis_schema() {
        {"headline", optional(text("the verdict as a sentence"))},
        {"detail", optional(text("a sentence with the figures of the verdict"))},
        {"probability", share("probability of this answer")},
-       {"base", object({{"rmse", figure("root mean square error of the supplied model")},
-                        {"held_out_rmse", figure("the same on trials that were not fitted")},
-                        {"noise_floor", figure("error that a true model would have")}})},
+       {"base", base},
        {"effects", array(effect, "effects that are missing")},
        {"ranking", array(ref("RankedEffect"), "all candidates, most probable first")},
        {"steps", array(step, "fall of the error as the effects are added")},
        {"confounded", array(tuple(text("identifier of an effect"), 2, "two effects"),
                             "pairs of effects that the recording cannot distinguish")},
        {"settle", nullable(settle)},
+       {"torque", optional(torque)},
        {"depends_on", text("signal on which an unexplained residual depends; else empty")},
        {"rest_explained", share("share of the residual that the signal explains")},
        {"held_out", text("how trials were held out")},

@@ -9,6 +9,7 @@
 #include "effects/catalogues.hpp"
 #include "lab/identify/user_effect_checks.hpp"
 #include "lab/identify/verdict_text.hpp"
+#include "lab/io/torque.hpp"
 #include "lab/report/answer.hpp"
 
 namespace tractus {
@@ -138,6 +139,7 @@ Result<LabResult> diagnosed(const Case& opened, const DiagnoseRequest& wish,
   out.json["detail"] = detail;
   if (out.discovery) out.json["discovery"] = lab::to_json(*out.discovery);
   out.model = opened.problem->model(diagnosis.final_fit.structure, diagnosis.final_fit.values);
+  if (opened.torque) TRY(add_torque(*opened.torque, diagnosis, wish, out, {}));
   if (wish.report) {
     compare_given(opened, out);
     compare_better(opened, diagnosis.final_fit, out);

@@ -9,6 +9,7 @@
 #include "effects/expression.hpp"
 #include "effects/palpation_expression.hpp"
 #include "lab/identify/user_effect_checks.hpp"
+#include "lab/io/torque.hpp"
 #include "lab/io/unpacked.hpp"
 #include "lab/rigs/palpation/problem.hpp"
 #include "lab/rigs/probing/problem.hpp"
@@ -100,6 +101,7 @@ Case begun(const std::string& model, const Set& set, const Sources& sources) {
           core::Json(),
           {},
           nullptr,
+          nullptr,
           lab::recorded(set)};
 }
 
@@ -151,6 +153,9 @@ Result<Case> open_probing(models::ProbingModel model, const Sources& sources,
   auto set = TRY(trial::read_probing_set(folder));
   TRY(check_reach(model, set));
   Case opened = begun(model.name, set, sources);
+  if (model.states_rotary && records_torque(set))
+    opened.torque = TRY(lab::make_probing_problem(
+        about_axis(model), set, {.threads = sources.threads, .torque_beside_force = true}));
   return with(std::move(opened),
               lab::make_probing_problem(
                   model, std::move(set),

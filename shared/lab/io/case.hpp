@@ -28,6 +28,8 @@ struct Case {
   core::Json tract;              ///< where the palpated channel is, as the set states it; else null
   std::vector<std::string> own;  ///< ids of the user's own effects
   std::unique_ptr<lab::Problem> problem;
+  std::unique_ptr<lab::Problem>
+      torque;  ///< about the probe's axis, where it was recorded beside the force; else null
   lab::Recorded recorded;
 };
 

@@ -47,7 +47,7 @@ ProbingParameterSpace::ProbingParameterSpace(models::ProbingModel model, const R
   }
   if (reach.slides) {
     for (std::size_t k = 0; k < model_.layers.size(); ++k) add_layer(k, reach);
-    add_delay(reach.spacing_s);
+    add_delay("force_delay_s", reach.spacing_s);
     return;
   }
   const laws::RotaryStage& r = model_.rotary;
@@ -66,6 +66,7 @@ ProbingParameterSpace::ProbingParameterSpace(models::ProbingModel model, const R
   pitch.step = 1e-5;
   pitch.prior_sd = 0.05;
   add(Kind::pitch, 0, "detent_pitch_rad", pitch);
+  add_delay("torque_delay_s", reach.spacing_s);
 }
 
 bool ProbingParameterSpace::fixed(const std::string& pointer) const {
@@ -140,7 +141,7 @@ void ProbingParameterSpace::add_layer(std::size_t k, const Reach& reach) {
   }
 }
 
-void ProbingParameterSpace::add_delay(double spacing_s) {
+void ProbingParameterSpace::add_delay(const char* name, double spacing_s) {
   if (std::ranges::any_of(own_, &effects::EffectFacts::is_delay)) return;
   Parameter delay{};
   delay.start = 0.0;
@@ -148,7 +149,7 @@ void ProbingParameterSpace::add_delay(double spacing_s) {
   delay.low = -delay.high;
   delay.step = 0.1 * spacing_s;
   delay.prior_sd = 0.5 * delay.high;
-  add(Kind::delay, 0, "force_delay_s", delay);
+  add(Kind::delay, 0, name, delay);
 }
 
 bool ProbingParameterSpace::delays(const Structure& structure) const {
@@ -156,8 +157,8 @@ bool ProbingParameterSpace::delays(const Structure& structure) const {
                              [&](const std::string& id) { return facts_of(id).is_delay; });
 }
 
-double ProbingParameterSpace::force_delay_s(const Structure& structure,
-                                            std::span<const double> values) const {
+double ProbingParameterSpace::sensor_delay_s(const Structure& structure,
+                                             std::span<const double> values) const {
   if (delays(structure)) return 0.0;
   for (std::size_t k = 0; k < slots_.size(); ++k)
     if (slots_[k].kind == Kind::delay) return values[k];

@@ -29,9 +29,9 @@ class ProbingParameterSpace {
   std::vector<Parameter> parameters(const Structure& structure) const;
   /// The model with these values. What is free per trial is left out of it.
   models::ProbingModel with(const Structure& structure, std::span<const double> values) const;
-  /// By how much the force is recorded late against the motion: a number of the recording that every fit estimates,
-  /// "/sensor/force_delay_s". 0 where an effect of the model or of the structure has a delay of its own.
-  double force_delay_s(const Structure& structure, std::span<const double> values) const;
+  /// By how much the judged channel is recorded late against the motion: a number of the recording that every fit
+  /// estimates, "/sensor/force_delay_s" or "/sensor/torque_delay_s". 0 where an effect of the model or of the structure has a delay of its own.
+  double sensor_delay_s(const Structure& structure, std::span<const double> values) const;
   /// Where every search for that number begins.
   void begin_at_delay(double delay_s);
   const models::ProbingModel& model() const { return model_; }
@@ -54,7 +54,7 @@ class ProbingParameterSpace {
   };
   void add(Kind kind, std::size_t layer, const char* name, const Parameter& parameter);
   void add_layer(std::size_t layer, const Reach& reach);
-  void add_delay(double spacing_s);
+  void add_delay(const char* name, double spacing_s);
   bool delays(const Structure& structure) const;
   bool fixed(const std::string& pointer) const;
 

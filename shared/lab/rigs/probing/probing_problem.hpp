@@ -97,7 +97,6 @@ class ProbingProblem final : public Problem, public FormulaTerms {
 
   /// Weighs the residuals anew with the borders and dampings that these values have.
   void focus(std::span<const double> values) {
-    if (turns_) return;
     const auto law = numbers_.with({}, values).law(kProbingRecording.longest_model_m);
     core::require(bool(law), "a fitted model runs");
     for (std::size_t k = 0; k < trials_.size(); ++k) {
@@ -132,7 +131,8 @@ class ProbingProblem final : public Problem, public FormulaTerms {
     core::require(bool(runtime), "values within their bounds make a model that runs");
     Predicted out;
     runtime->predict(r.motion, out.forces);
-    effects::delay(r.motion.t_s, numbers_.force_delay_s(structure, values), out.forces.fz_N);
+    effects::delay(r.motion.t_s, numbers_.sensor_delay_s(structure, values),
+                   turns_ ? out.forces.tz_Nm : out.forces.fz_N);
     out.at_rest_N = dry_at_rest(model, r);
     for (std::size_t i = 0; i < out.at_rest_N.size(); ++i) {  // the middle of what it may be
       const std::size_t k = r.rest[i];

@@ -57,6 +57,8 @@ void ProbingProblem::set_candidates() {
   const auto every = [&](auto member) {
     return std::ranges::none_of(trials_, [&](const auto& r) { return (r.motion.*member).empty(); });
   };
+  const bool slides =
+      std::ranges::none_of(trials_, [](const auto& r) { return r.recorded_x_m.empty(); });
   const bool angle = every(&effects::ProbingMotion::omega_rad_s),
              torque = every(&effects::ProbingMotion::tz_Nm);
   std::vector<effects::EffectFacts> all;
@@ -65,7 +67,7 @@ void ProbingProblem::set_candidates() {
   for (const effects::EffectFacts& facts : all) {
     // The torque is judged where the rig only turns, the force everywhere else.
     const bool shows = (facts.channel == effects::Channel::torque) == turns_;
-    if (numbers_.has(facts.id) || (!turns_ && !shows)) continue;
+    if (numbers_.has(facts.id) || (!shows && slides)) continue;
     Candidate candidate{facts, true, ""};
     const auto lacks = [&](const std::string& why) {
       candidate.possible = false;
@@ -200,7 +202,8 @@ Result<std::unique_ptr<Problem>> make_probing_problem(const models::ProbingModel
                                                       trial::ProbingSet set,
                                                       const ProbingOptions& options,
                                                       const core::Progress& progress) {
-  const bool turns = std::ranges::any_of(set.trials, [](const auto& t) { return t.x_m.empty(); });
+  const bool turns = options.torque_beside_force ||
+                     std::ranges::any_of(set.trials, [](const auto& t) { return t.x_m.empty(); });
   if (turns && std::ranges::any_of(set.trials, [](const auto& t) { return t.theta_rad.empty(); }))
     return Error{Errc::bad_input, fmt::format("{}: some trials slide only and others turn only; "
                                               "a set of one kind is expected",

@@ -12,6 +12,8 @@ namespace tractus::lab {
 
 struct ProbingOptions {
   int threads = 2;
+  /// Judges the torque about the probe's axis, of a set whose trials all slide and turn, with both force and torque.
+  bool torque_beside_force = false;
   UserEffects user_effects = {};  ///< the user's own effects, candidates as the catalogue's
 };
 

@@ -11,6 +11,7 @@
 #include <numbers>
 #include <random>
 
+#include "core/try.hpp"
 #include "lab/identify/diagnosis.hpp"
 
 namespace tractus {
@@ -165,6 +166,52 @@ TEST(ProbingProblem, ARigThatOnlyTurnsNamesAHiddenStiffness) {
   EXPECT_EQ(d->effects[0].id, "rotary_stiffness");
   EXPECT_NEAR(d->effects[0].parameters[0].value[0] / kStiffness_Nm_per_rad, 1.0, 0.01);
   EXPECT_NEAR(d->final_fit.noise_floor / kNoise_Nm, 1.0, 0.1);
+}
+
+/// Sliding and turning at once. The torque is that of [Probing]'s turning stage without a detent; a hidden spring is added.
+trial::ProbingSet turning_set(double stiffness_Nm_per_rad) {
+  constexpr double kViscous_Nms_per_rad = 0.01, kNoise_Nm = 2e-4;
+  std::mt19937_64 random(10);
+  std::normal_distribution<> normal;
+  trial::ProbingSet set = set_of([](const Moment&) { return 0.0; });
+  for (std::size_t k = 0; k < set.trials.size(); ++k) {
+    trial::ProbingMeasurement& m = set.trials[k];
+    const double a = 1.5 + 0.2 * double(k), b = 2.3 * a;
+    for (const double t : m.t_s) {
+      const double theta = 0.8 * std::sin(a * t) + 0.2 * std::sin(b * t + double(k)),
+                   omega = 0.8 * a * std::cos(a * t) + 0.2 * b * std::cos(b * t + double(k));
+      m.theta_rad.push_back(theta + 1e-5 * normal(random));
+      m.tz_Nm.push_back(kViscous_Nms_per_rad * omega + stiffness_Nm_per_rad * theta +
+                        kNoise_Nm * normal(random));
+    }
+  }
+  return set;
+}
+
+core::Result<Diagnosis> diagnosis_of_torque(double stiffness_Nm_per_rad) {
+  models::ProbingModel model = model_of();
+  model.rotary = {.viscous_Nms_per_rad = 0.012, .detent_Nm = 0.0, .detent_pitch_rad = 0.26};
+  const auto problem = TRY(make_probing_problem(model, turning_set(stiffness_Nm_per_rad),
+                                                {.threads = 2, .torque_beside_force = true}));
+  EXPECT_EQ(problem->channels().front().name, "tz_Nm");
+  return diagnose(*problem);
+}
+
+TEST(ProbingProblem, TheTorqueBesideAForceNamesAHiddenStiffness) {
+  const auto d = diagnosis_of_torque(0.005);
+  ASSERT_TRUE(d) << d.error().what;
+  EXPECT_EQ(d->verdict, Verdict::missing);
+  ASSERT_EQ(d->effects.size(), 1u);
+  EXPECT_EQ(d->effects[0].id, "rotary_stiffness");
+  EXPECT_NEAR(d->effects[0].parameters[0].value[0] / 0.005, 1.0, 0.01);
+  for (const Ranked& one : d->ranking)
+    EXPECT_TRUE(one.id.find("rotary") != std::string::npos) << one.id << " acts on the force";
+}
+
+TEST(ProbingProblem, ATorqueThatLacksNothingIsComplete) {
+  const auto d = diagnosis_of_torque(0.0);
+  ASSERT_TRUE(d) << d.error().what;
+  EXPECT_EQ(d->verdict, Verdict::complete);
 }
 
 TEST(ProbingProblem, WhatNeedsAChannelThatWasNotRecordedIsLeftOutAndSaidSo) {

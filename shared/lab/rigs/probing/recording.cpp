@@ -94,6 +94,7 @@ void prepare_turning(trial::ProbingMeasurement& trial, const trial::StatedNoise&
     Smoothed theta =
         smooth(trial.t_s, trial.theta_rad, noise_of(trial.theta_rad, stated.theta_rad).sd);
     motion.theta_rad = std::move(theta.value);
+    out.theta_sd_rad = std::move(theta.value_sd);
     motion.omega_rad_s = std::move(theta.rate);
     out.omega_sd_rad_s = std::move(theta.rate_sd);
     motion.rest_rad_s = kProbingRecording.rest_errors * middle_of(out.omega_sd_rad_s);
@@ -154,10 +155,12 @@ void find_rest(ProbingRecording& r) {
   }
 }
 
-/// The same of a rig that only turns.
+/// The same of the turning.
 void find_turning_rest(ProbingRecording& r) {
   const effects::ProbingMotion& m = r.motion;
   effects::ProbingMotion& out = r.at_rest;
+  r.rest.clear();
+  out = {};
   out.rest_rad_s = 0.0;
   for (std::size_t k = 0; k < r.size(); ++k) {
     const double told_rad_s =
@@ -165,17 +168,25 @@ void find_turning_rest(ProbingRecording& r) {
     if (std::abs(m.omega_rad_s[k]) >= told_rad_s) continue;
     r.rest.push_back(k);
     out.t_s.push_back(m.t_s[k]);
-    for (auto* all : {&out.x_m, &out.v_m_s, &out.a_m_s2}) all->push_back(0.0);
+    out.x_m.push_back(m.x_m[k]);
+    for (auto* all : {&out.v_m_s, &out.a_m_s2}) all->push_back(0.0);
     out.theta_rad.push_back(m.theta_rad[k]);
     out.omega_rad_s.push_back(told_rad_s);
   }
 }
 
-/// Where the force jumps between neighbouring samples because a border lies between them: the
+/// What the law says of the judged channel at a sample, were the probe at this depth.
+double judged(const laws::ProbingLaw& law, const ProbingRecording& r, double x_m, std::size_t k) {
+  const effects::ProbingMotion& m = r.motion;
+  return r.turns ? law.torque_Nm(x_m, m.theta_rad[k], m.omega_rad_s[k])
+                 : law.force_N(x_m, m.v_m_s[k]);
+}
+
+/// Where the judged channel jumps between neighbouring samples because a border lies between them: the
 /// second of the two, and by how much.
 struct Jump {
   std::size_t sample;
-  double size_N;
+  double size;
 };
 
 std::vector<Jump> jumps(const laws::ProbingLaw& law, const ProbingRecording& r) {
@@ -185,10 +196,33 @@ std::vector<Jump> jumps(const laws::ProbingLaw& law, const ProbingRecording& r) 
   for (std::size_t k = 1; k < x.size(); ++k)
     for (const double border : borders)
       if ((x[k - 1] < border) != (x[k] < border)) {
-        const double v = r.motion.v_m_s[k];
-        out.push_back({k, std::abs(law.force_N(border + 1e-9, v) - law.force_N(border - 1e-9, v))});
+        out.push_back(
+            {k, std::abs(judged(law, r, border + 1e-9, k) - judged(law, r, border - 1e-9, k))});
         break;
       }
+  return out;
+}
+
+/// Variance of the judged channel by the errors of the smoothed motion, sample by sample. The law of the force is linear
+/// in depth and speed but for its borders: differences are its derivatives.
+std::vector<double> variance_by_motion(const laws::ProbingLaw& law, const ProbingRecording& r) {
+  const auto& m = r.motion;
+  std::vector<double> out(r.size());
+  for (std::size_t k = 0; k < r.size(); ++k) {
+    const double at = judged(law, r, m.x_m[k], k);
+    if (r.turns) {
+      const double speed_rad_s = m.omega_rad_s[k] + r.omega_sd_rad_s[k],
+                   angle_rad = m.theta_rad[k] + r.theta_sd_rad[k];
+      const double by_speed = law.torque_Nm(m.x_m[k], m.theta_rad[k], speed_rad_s) - at;
+      const double by_angle = law.torque_Nm(m.x_m[k], angle_rad, m.omega_rad_s[k]) - at;
+      out[k] = by_speed * by_speed + by_angle * by_angle;
+      continue;
+    }
+    const double by_speed = law.force_N(m.x_m[k], m.v_m_s[k] + r.v_sd_m_s[k]) - at;
+    const double by_depth = law.force_N(m.x_m[k], 0.0) - law.force_N(m.x_m[k] - r.x_sd_m[k], 0.0);
+    const double border = std::abs(by_depth) > 0.5 * std::abs(at) ? 0.0 : by_depth;
+    out[k] = by_speed * by_speed + border * border;
+  }
   return out;
 }
 
@@ -262,6 +296,7 @@ Result<ProbingRecording> prepare(trial::ProbingMeasurement&& trial,
                            kProbingRecording.slowest_rate_Hz));
   ProbingRecording out;
   out.id = trial.id;
+  out.turns = turns;
   out.motion.t_s = std::move(trial.t_s);
   trial.t_s = out.motion.t_s;
   out.measured = turns ? trial.tz_Nm : std::move(trial.fz_N);
@@ -333,16 +368,8 @@ void estimate_noise(ProbingRecording& r, std::span<const double> residual,
 
 void weigh(const laws::ProbingLaw& law, ProbingRecording& r) {
   const std::size_t n = r.size();
-  std::vector<double> motion_variance(n);
+  const std::vector<double> motion_variance = variance_by_motion(law, r);
   const auto& m = r.motion;
-  for (std::size_t k = 0; k < n; ++k) {
-    // The law is linear in depth and speed but for its borders: differences are its derivatives.
-    const double f = law.force_N(m.x_m[k], m.v_m_s[k]);
-    const double by_speed = law.force_N(m.x_m[k], m.v_m_s[k] + r.v_sd_m_s[k]) - f;
-    const double by_depth = law.force_N(m.x_m[k], 0.0) - law.force_N(m.x_m[k] - r.x_sd_m[k], 0.0);
-    const double border = std::abs(by_depth) > 0.5 * std::abs(f) ? 0.0 : by_depth;
-    motion_variance[k] = by_speed * by_speed + border * border;
-  }
   const auto found = jumps(law, r);
   r.judgement.assign(n, Judgement::judged);
   const auto reach =
@@ -359,7 +386,8 @@ void weigh(const laws::ProbingLaw& law, ProbingRecording& r) {
                               r.noise_sd * r.noise_sd);
   for (std::size_t k = 0; k < n; ++k)
     if (motion_variance[k] > most) r.judgement[k] = Judgement::unknown_motion;
-  for (const double border : borders_of(law.parameters().layers))
+  const bool slides = !r.recorded_x_m.empty();
+  for (const double border : slides ? borders_of(law.parameters().layers) : std::vector<double>{})
     for (std::size_t k = 0; k < n; ++k)  // on which side is nobody's to tell
       if (std::abs(m.x_m[k] - border) < kProbingRecording.on_border_m + 3.0 * r.x_sd_m[k])
         r.judgement[k] = Judgement::at_border;
@@ -371,7 +399,7 @@ void weigh(const laws::ProbingLaw& law, ProbingRecording& r) {
   const std::size_t half = r.decimator.half() + 1;
   std::size_t begin = 0;
   for (const Jump& jump : found) {
-    const double error_N = r.decimator.largest_tap() * jump.size_N;
+    const double error = r.decimator.largest_tap() * jump.size;
     for (std::size_t j = begin; j < jump_variance.size(); ++j) {
       const std::size_t middle = r.decimator.middle(j);
       if (middle + half < jump.sample) {
@@ -379,7 +407,7 @@ void weigh(const laws::ProbingLaw& law, ProbingRecording& r) {
         continue;
       }
       if (middle > jump.sample + half) break;
-      jump_variance[j] += error_N * error_N;
+      jump_variance[j] += error * error;
     }
   }
   for (std::size_t j = 0; j < r.sd_thin.size(); ++j)

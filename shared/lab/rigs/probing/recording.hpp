@@ -22,16 +22,18 @@ inline constexpr const auto& kProbingRecording = kSettings.probing_recording;
 
 struct ProbingRecording {
   std::string id;
+  bool turns = false;                ///< the torque is judged, not the force
   std::vector<double> recorded_x_m;  ///< as it came, for smoothing anew; empty without sliding
   double x_noise_sd_m = 0.0;         ///< of one recorded position
   double x_rounding_sd_m = 0.0;      ///< the part of it that smoothing does not average away
   effects::ProbingMotion motion;
   std::vector<double> x_sd_m, v_sd_m_s, a_sd_m_s2;  ///< standard errors of the smoothed motion
-  std::vector<double> omega_sd_rad_s;  ///< the same of the turning; empty without an angle
-  std::vector<double> measured;        ///< of the primary channel (fz_N, or tz_Nm), full rate
-  std::vector<double> other;           ///< tz_Nm beside fz_N, or empty
-  double noise_sd = 0.0;               ///< of one sample of `measured`
-  double slow_noise_sd = 0.0;          ///< of one sample after filter and thinning
+  std::vector<double> theta_sd_rad,
+      omega_sd_rad_s;            ///< the same of the turning; empty without an angle
+  std::vector<double> measured;  ///< of the primary channel (fz_N, or tz_Nm), full rate
+  std::vector<double> other;     ///< tz_Nm beside fz_N, or empty
+  double noise_sd = 0.0;         ///< of one sample of `measured`
+  double slow_noise_sd = 0.0;    ///< of one sample after filter and thinning
   double other_noise_sd = 0.0;
   Decimator decimator{1.0, 1.0};
   std::vector<double> measured_thin;  ///< filtered and thinned
@@ -48,8 +50,7 @@ struct ProbingRecording {
   std::size_t size() const { return motion.t_s.size(); }
 };
 
-/// Prepares a trial, which is used up. @param turns  compare the torque of the turning stage (a rig
-/// that does not slide). @param borders_m  of the given model's layers. Errors: bad_input naming the trial: too few samples, too slow, no motion.
+/// Prepares a trial, which is used up. @param turns  compare the torque of the turning stage, not the force. @param borders_m  of the given model's layers. Errors: bad_input naming the trial: too few samples, too slow, no motion.
 core::Result<ProbingRecording> prepare(trial::ProbingMeasurement&& trial,
                                        const trial::StatedNoise& stated, bool turns,
                                        std::span<const double> borders_m, const std::string& where);

@@ -31,7 +31,6 @@ void ProbingProblem::estimate_delay(int threads) {
 }
 
 void ProbingProblem::estimate_noise(std::span<const double> values) {
-  if (turns_) return;
   for (std::size_t k = 0; k < trials_.size(); ++k) {
     ProbingRecording& r = trials_[k];
     const auto full = full_rate({}, values, int(k)).channels.front();
