@@ -156,6 +156,8 @@ Result<Diagnosis> diagnose(const Problem& problem, const DiagnoseOptions& option
   Solution& chosen = selection.chosen();
   ResidualDependence rest = residual_dependence(residual, chosen);
   out.final_fit = chosen.structure.effects.empty() ? out.base_fit : report(residual, chosen, true);
+  // A fit that leaves less than the noise was thought to be shows that it is less.
+  out.final_fit.noise_floor = std::min(out.final_fit.noise_floor, out.final_fit.rmse);
   out.base.noise_floor = std::min(out.base.noise_floor, out.final_fit.noise_floor);
   const bool more = more_is_missing(rest, out.final_fit);
   const bool named = !chosen.structure.effects.empty() &&

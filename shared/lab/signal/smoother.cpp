@@ -180,10 +180,12 @@ class Bank {
   Bank(Filter& filter, std::span<const double> variance, double spacing_s)
       : variance_(variance), size_(variance.size()), spacing_s_(spacing_s) {
     const std::size_t size = size_;
-    const double highest = std::min(kSmoothing.highest_cutoff_Hz, 0.2 / spacing_s);
+    const double usual = std::min(kSmoothing.highest_cutoff_Hz, 0.2 / spacing_s),
+                 highest = kSmoothing.highest_cutoff_of_rate / spacing_s;
     std::vector<double> q(size), sums;
-    for (double f = std::min(kSmoothing.lowest_cutoff_Hz, highest); f <= highest * 1.001;
+    for (double f = std::min(kSmoothing.lowest_cutoff_Hz, usual); f <= highest;
          f *= kSmoothing.cutoff_ratio) {
+      if (f > usual * 1.001 && !still_improving()) break;
       std::ranges::fill(q, intensity(f));
       filter.forward(q);
       std::vector<double> score(size);
@@ -237,6 +239,13 @@ class Bank {
       if (sum < least) least = sum, best = j;
     }
     return best;
+  }
+
+  /// Is more than a tenth of the samples too smooth even at the highest cut-off so far?
+  bool still_improving() const {
+    std::size_t too_smooth_there = 0;
+    for (std::size_t k = 0; k < size_; ++k) too_smooth_there += too_smooth(long_.size() - 1, k);
+    return 10 * too_smooth_there > size_;
   }
 
   bool too_smooth(std::size_t j, std::size_t k) const {
@@ -306,22 +315,48 @@ void smooth_stretch(std::span<const double> t_s, std::span<const double> y, doub
 
 }  // namespace
 
-double noise_sd(std::span<const double> y, NoiseQuantile of) {
+namespace {
+
+/// Standard deviation of white noise by differences of an order, which pass 2 · 1·3 … of its variance: the sum of the
+/// squares of the binomial coefficients. 0 where the signal is too short.
+double noise_by_differences(std::span<const double> y, int order, NoiseQuantile of) {
   constexpr std::size_t kWindow = 16;
-  if (y.size() < 8) return 0.0;
+  if (y.size() < std::size_t(order) + 5) return 0.0;
+  std::vector<double> d(y.begin(), y.end());
+  double passed = 1.0;
+  for (int k = 1; k <= order; ++k) {
+    for (std::size_t i = 0; i + std::size_t(k) < y.size(); ++i) d[i] = d[i + 1] - d[i];
+    passed *= double(4 * k - 2) / double(k);
+  }
+  d.resize(y.size() - std::size_t(order));
   std::vector<double> squares;
-  const std::size_t window = std::min(kWindow, y.size() - 3);
-  for (std::size_t at = 0; at + window + 3 <= y.size(); at += window) {
+  const std::size_t window = std::min(kWindow, d.size());
+  for (std::size_t at = 0; at + window <= d.size(); at += window) {
     double sum = 0.0;
-    for (std::size_t k = at; k < at + window; ++k) {
-      const double d = y[k + 3] - 3.0 * y[k + 2] + 3.0 * y[k + 1] - y[k];
-      sum += d * d;
-    }
-    squares.push_back(sum / double(window) / 20.0);  // 1 + 9 + 9 + 1
+    for (std::size_t k = at; k < at + window; ++k) sum += d[k] * d[k];
+    squares.push_back(sum / double(window) / passed);
   }
   const auto low = squares.begin() + std::ptrdiff_t(of.share * double(squares.size()));
   std::ranges::nth_element(squares, low);
   return std::sqrt(*low / of.of_mean);
+}
+
+}  // namespace
+
+double noise_sd(std::span<const double> y, NoiseQuantile of) {
+  return noise_by_differences(y, 3, of);
+}
+
+double noise_sd_on_fast_motion(std::span<const double> y) {
+  // The quantile's share of the mean falls with the order, as neighbouring differences are less independent.
+  constexpr std::array<std::pair<int, double>, 3> kHigher{{{5, 0.6333}, {7, 0.6062}, {9, 0.5825}}};
+  double sd = noise_sd(y);
+  for (const auto& [order, of_mean] : kHigher) {
+    const double now = noise_by_differences(y, order, {kNoiseQuantile.share, of_mean});
+    if (!(now > 0.0) || now > kSmoothing.fast_motion_fall * sd) break;
+    sd = now;
+  }
+  return sd;
 }
 
 std::vector<double> rounding_variance(std::span<const double> y) {

@@ -34,6 +34,10 @@ struct Break {
 /// not even one every twentieth of a second. Quantisation counts as noise. Fewer than 8 samples: 0.
 double noise_sd(std::span<const double> y, NoiseQuantile of = kNoiseQuantile);
 
+/// The same where the motion itself may be fast against the samples: by fifth, seventh and ninth differences, as long as each
+/// gives much less than the one before, which white noise does not.
+double noise_sd_on_fast_motion(std::span<const double> y);
+
 /// How much less a sample that repeats its neighbours says than one of its own, as the variance of
 /// its noise over that of others: rounding hides in all of them what it hides in one. 1 where
 /// neighbours differ.

@@ -100,6 +100,33 @@ TEST(Smoother, KinksEveryTwentiethOfASecondAreNoNoise) {
   EXPECT_NEAR(noise_sd(r.y), 5e-7, 0.15 * 5e-7);
 }
 
+TEST(Smoother, AMotionOfAFewSamplesAPeriodKeepsItsAcceleration) {
+  // 0.1 mm at 60 Hz and 20 um at 140 Hz, 750 samples a second, 5 nm of noise; the derivatives are analytic.
+  std::mt19937_64 random(8);
+  std::normal_distribution<> normal;
+  Recorded r;
+  const double a = 2.0 * kPi * 60.0, b = 2.0 * kPi * 140.0;
+  for (int k = 0; k < 6000; ++k) {
+    const double t = k / 750.0;
+    r.t_s.push_back(t);
+    r.y.push_back(1e-4 * std::sin(a * t) + 2e-5 * std::sin(b * t) + 5e-9 * normal(random));
+    r.acceleration.push_back(-1e-4 * a * a * std::sin(a * t) - 2e-5 * b * b * std::sin(b * t));
+  }
+  const double noise = noise_sd_on_fast_motion(r.y);
+  EXPECT_GT(noise_sd(r.y), 100.0 * 5e-9);  // third differences hold the motion
+  // Ninth differences pass (2 sin(pi 140/750))^9 = 2.5 of the faster sine, and sqrt(48620) = 220 of noise.
+  EXPECT_LT(noise, 1.5 * 2e-5 / std::sqrt(2.0) * 2.5 / 220.0);
+  const Smoothed s = smooth(r.t_s, r.y, noise);
+  const std::vector<double> none(r.acceleration.size(), 0.0);
+  EXPECT_LT(rms_of_difference(s.acceleration, r.acceleration),
+            0.03 * rms_of_difference(none, r.acceleration));
+}
+
+TEST(Smoother, OnASlowMotionHigherDifferencesChangeNothing) {
+  const auto r = sines(1000.0, 8.0, 5e-7);
+  EXPECT_EQ(noise_sd_on_fast_motion(r.y), noise_sd(r.y));
+}
+
 TEST(Smoother, APositionThatStandsOnItsRoundingIsNotSeenToMove) {
   // A creep to a rest, 35 mm (1 − e^(−t/2 s)), counted in steps of 5 µm: after 30 s less than a
   // step is left to go.

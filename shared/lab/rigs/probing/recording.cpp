@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "lab/settings.hpp"
+#include "lab/signal/even_clock.hpp"
 #include "lab/signal/smoother.hpp"
 
 namespace tractus {
@@ -41,11 +42,10 @@ struct Noise {
   double correlated = 0.0;  ///< sd of the part that filtering does not average away
 };
 
-/// Noise of a channel. Rounding that is not drowned by noise stays where it is for long: its first
+/// Noise of a channel, `sd` as differences of its samples say. Rounding that is not drowned by noise stays where it is for long: its first
 /// harmonic has the power q²/(2π²) e^(−4π²σ²/q²) for noise σ before rounding to q.
-Noise noise_of(std::span<const double> y, std::optional<double> stated) {
+Noise noise_of(std::span<const double> y, std::optional<double> stated, double sd) {
   const double q = quantum(y);
-  double sd = noise_sd(y);
   if (!(sd > 0.0)) sd = stated.value_or(0.0);
   sd = std::max(sd, q / std::sqrt(12.0));
   if (!(sd > 0.0)) {
@@ -91,8 +91,9 @@ void prepare_turning(trial::ProbingMeasurement& trial, const trial::StatedNoise&
                      ProbingRecording& out) {
   effects::ProbingMotion& motion = out.motion;
   if (!trial.theta_rad.empty()) {
-    Smoothed theta =
-        smooth(trial.t_s, trial.theta_rad, noise_of(trial.theta_rad, stated.theta_rad).sd);
+    Smoothed theta = smooth(
+        trial.t_s, trial.theta_rad,
+        noise_of(trial.theta_rad, stated.theta_rad, noise_sd_on_fast_motion(trial.theta_rad)).sd);
     motion.theta_rad = std::move(theta.value);
     out.theta_sd_rad = std::move(theta.value_sd);
     motion.omega_rad_s = std::move(theta.rate);
@@ -112,7 +113,7 @@ void prepare_sliding(trial::ProbingMeasurement& trial, const trial::StatedNoise&
       all->assign(n, 0.0);
     return;
   }
-  const Noise noise = noise_of(trial.x_m, stated.x_m);
+  const Noise noise = noise_of(trial.x_m, stated.x_m, noise_sd_on_fast_motion(trial.x_m));
   out.recorded_x_m = std::move(trial.x_m);
   out.x_noise_sd_m = noise.sd;
   out.x_rounding_sd_m = noise.correlated;
@@ -294,6 +295,7 @@ Result<ProbingRecording> prepare(trial::ProbingMeasurement&& trial,
     return unusable_probing(
         where, fmt::format("{:.3g} samples per second, at least {} are expected", 1.0 / spacing_s,
                            kProbingRecording.slowest_rate_Hz));
+  restore_even_clock(trial.t_s);
   ProbingRecording out;
   out.id = trial.id;
   out.turns = turns;
@@ -301,14 +303,16 @@ Result<ProbingRecording> prepare(trial::ProbingMeasurement&& trial,
   trial.t_s = out.motion.t_s;
   out.measured = turns ? trial.tz_Nm : std::move(trial.fz_N);
   if (!turns) out.other = trial.tz_Nm;
-  const Noise noise = noise_of(out.measured, turns ? stated.tz_Nm : stated.fz_N);
+  const Noise noise =
+      noise_of(out.measured, turns ? stated.tz_Nm : stated.fz_N, noise_sd(out.measured));
   out.noise_sd = noise.sd;
   out.decimator = Decimator(spacing_s, kProbingRecording.thin_rate_Hz);
   out.slow_noise_sd =
       std::hypot(noise.sd * std::sqrt(out.decimator.noise_gain()) *
                      (out.decimator.stride() > 1 ? colour(out.measured, noise.sd) : 1.0),
                  noise.correlated);
-  if (!out.other.empty()) out.other_noise_sd = noise_of(out.other, stated.tz_Nm).sd;
+  if (!out.other.empty())
+    out.other_noise_sd = noise_of(out.other, stated.tz_Nm, noise_sd(out.other)).sd;
   prepare_sliding(trial, stated, out);
   set_motion(out, borders_m);
   prepare_turning(trial, stated, out);

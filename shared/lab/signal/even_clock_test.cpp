@@ -1,0 +1,49 @@
+#include "lab/signal/even_clock.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+namespace tractus {
+namespace lab {
+namespace {
+
+double rounded(double t_s, double step_s) { return std::round(t_s / step_s) * step_s; }
+
+double farthest(const std::vector<double>& a, const std::vector<double>& b) {
+  double most = 0.0;
+  for (std::size_t k = 0; k < a.size(); ++k) most = std::max(most, std::abs(a[k] - b[k]));
+  return most;
+}
+
+TEST(EvenClock, IsFoundBehindStampsRoundedToATenthOfAMillisecondWithRowsLost) {
+  std::vector<double> truth, t_s;
+  for (int k = 0; k < 6000; ++k)
+    if (k % 997 > 3) truth.push_back(k / 3000.0);  // four rows lost now and then
+  for (const double t : truth) t_s.push_back(rounded(t, 1e-4));
+  restore_even_clock(t_s);
+  EXPECT_LT(farthest(t_s, truth), 2e-6);
+}
+
+TEST(EvenClock, LeavesAClockThatJittersAsItIs) {
+  std::mt19937_64 random(3);
+  std::normal_distribution<> jitter(0.0, 3e-5);
+  std::vector<double> t_s;
+  for (int k = 0; k < 2000; ++k) t_s.push_back(rounded(k / 1000.0 + jitter(random), 1e-6));
+  const std::vector<double> before = t_s;
+  restore_even_clock(t_s);
+  EXPECT_EQ(t_s, before);
+}
+
+TEST(EvenClock, LeavesStampsThatWereNeverRounded) {
+  std::vector<double> t_s;
+  for (int k = 0; k < 2000; ++k) t_s.push_back(k / 3000.0);
+  const std::vector<double> before = t_s;
+  restore_even_clock(t_s);
+  EXPECT_EQ(t_s, before);
+}
+
+}  // namespace
+}  // namespace lab
+}  // namespace tractus
