@@ -139,8 +139,8 @@ void print(const check::ObserverRecord& record) {
   for (const auto& one : record.measured) {
     const bool gap = one.stimulus == Stimulus::gap;
     const auto& [median, range, slope] = one.threshold;
-    fmt::print("  {:<11} {:7.1f} {} (95 %: {:.1f} to {:.1f}), {} of {} right\n",
-               check::name(one.stimulus), 1e3 * median, gap ? "mm/1000" : "mN", 1e3 * range.low,
+    fmt::print("  {:<11} {:7.2f} {} (95 %: {:.2f} to {:.2f}), {} of {} right\n",
+               check::name(one.stimulus), 1e3 * median, gap ? "mm" : "mN", 1e3 * range.low,
                1e3 * range.high, one.right, one.questions);
   }
 }
