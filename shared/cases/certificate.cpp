@@ -4,12 +4,17 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
+
+#include "core/file.hpp"
+#include "core/try.hpp"
 
 namespace tractus {
 namespace cases {
 namespace {
 
 constexpr const char* kCertificateFormat = "tractus-certificate/1";
+constexpr const char* kObserverFormat = "tractus-observer/1";
 
 core::Json word_or_null(const auto& value) {
   return value ? core::Json(std::string(name(*value))) : core::Json();
@@ -42,7 +47,7 @@ std::optional<double> WallCertificate::d_prime() const {
 
 bool WallCertificate::passes() const {
   const auto d = d_prime();
-  if (!d) return false;
+  if (!d || foretold < kLeastForetold) return false;
   if (wall == volume::Wall::anterior) return *d >= kLeastEnd && end_force_N >= kLeastEndForce_N;
   return *d >= kLeastSide && *told.b >= *told.fa + kLeastOverFalse;
 }
@@ -60,6 +65,7 @@ core::Json WallCertificate::to_json() const {
           {"contrast", word_or_null(told.contrast)},
           {"lean_m", told.lean_m},
           {"force_N", told.force_N},
+          {"foretold", std::round(foretold * 1000.0) / 1000.0},
           {"end_force_N", wall == volume::Wall::anterior ? core::Json(end_force_N) : core::Json()},
           {"why_not", core::or_null(why_not)},
           {"places", places_json(places)}};
@@ -74,8 +80,9 @@ std::string Certificate::warning() const {
   for (const WallCertificate& wall : walls) {
     if (wall.passes()) continue;
     const auto d = wall.d_prime();
-    out += fmt::format("{}{} ({})", out.empty() ? "" : ", ", volume::name(wall.wall),
-                       d ? fmt::format("d′ {:.1f}", *d) : "not tried");
+    out += fmt::format(
+        "{}{} ({})", out.empty() ? "" : ", ", volume::name(wall.wall),
+        d ? fmt::format("d′ {:.1f}, {:.0f} % right", *d, 100.0 * wall.foretold) : "not tried");
   }
   return out.empty() ? out : "breaches of these walls cannot be told by feel: " + out;
 }
@@ -97,6 +104,29 @@ core::Json Certificate::to_json() const {
       d_prime[std::string(volume::name(volume::kWalls[w]))] = core::or_null(one.d_prime[w]);
     out["sensitivities"].push_back(
         {{"assumption", one.assumption}, {"value", one.value}, {"d_prime", d_prime}});
+  }
+  return out;
+}
+
+core::Result<Perception> read_perception(const std::filesystem::path& path) {
+  const core::Json file = TRY(core::read_json(path));
+  const auto refuse = [&](const std::string& why) {
+    return core::Error{core::Errc::bad_input, fmt::format("{}: {}", path.string(), why)};
+  };
+  if (core::text_member(file, "format") != kObserverFormat)
+    return refuse(
+        fmt::format("no file of format {}: tractus-station threshold makes one", kObserverFormat));
+  Perception out;
+  const auto perception = file.value("perception", core::Json::object());
+  for (const auto& [key, field, least, most] :
+       {std::tuple{"force_threshold_N", &Perception::force_threshold_N, 0.001, 1.0},
+        std::tuple{"force_weber", &Perception::force_weber, 0.0, 2.0}}) {
+    const auto at = perception.find(key);
+    if (at == perception.end() || !at->is_number() || !(at->get<double>() >= least) ||
+        !(at->get<double>() <= most))
+      return refuse(
+          fmt::format("perception: {}: a number from {} to {} is expected", key, least, most));
+    out.*field = at->get<double>();
   }
   return out;
 }

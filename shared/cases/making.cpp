@@ -19,6 +19,7 @@ constexpr double kOuterRing_m = 0.014;  // outer faces of a ring of filled bone
 constexpr double kPastMouth_m = 0.005;  // of the ring's first depth begin the places that are felt
 constexpr double kRingStep_m = 0.001;
 constexpr double kMove_m = 0.001;
+constexpr double kShort = 100.0;     // what is lost in score by a share short of kLeastForetold
 constexpr double kBoneShare = 0.1;   // of a making's progress
 constexpr double kTapped_m = 0.003;  // WallCertificate::kLeastEndForce_N within
 
@@ -43,13 +44,15 @@ class Tried {
  public:
   /// `bone` is not drilled. All must outlive this.
   static core::Result<Tried> make(const volume::Volume& bone, const models::PalpationModel& model,
-                                  const Placed& placed, double from_m) {
+                                  const Placed& placed, double from_m,
+                                  const Perception& perception) {
     Tried out(bone, placed, Observer(model, placed.tract, from_m));
     volume::drill(out.drilled_, placed.tract, placed.mouth_m, std::nullopt, placed.empty_value);
     out.field_ = std::make_unique<volume::ForceField>(
         TRY(volume::ForceField::make(out.drilled_, model.transfer, model.field)));
     out.palpated_ = TRY(out.observer_.palpate(*out.field_));
-    out.felt_ = out.observer_.felt(out.palpated_, {});
+    out.felt_ = out.felt(perception);
+    out.perception_ = perception;
     return out;
   }
 
@@ -63,22 +66,21 @@ class Tried {
     field_->update(drilled_, box);
     return out;
   }
+  Observer::Felt felt(const Perception& perception) const {
+    return observer_.felt(palpated_, perception);
+  }
+  /// @param whole  `felt` with the same perception
   WallCertificate certify(const Breach& breach, const Palpated& palpated,
-                          const Perception& perception) const {
+                          const Observer::Felt& whole, const Perception& perception) const {
     WallCertificate out{.wall = breach.wall.wall, .at_m = breach.wall.at_m};
-    const auto whole = observer_.felt(palpated_, perception);
-    out.told = observer_.detect(whole, observer_.felt(palpated, perception), out.wall, *out.at_m,
-                                perception);
+    const auto breached = observer_.felt(palpated, perception);
+    out.told = observer_.detect(whole, breached, out.wall, *out.at_m, perception);
+    out.foretold = observer_.foretold(whole, breached, out.wall, *out.at_m, perception);
     out.end_force_N = observer_.end_force_N(whole, kTapped_m);
     return out;
   }
-  /// The same with the standard perception, quicker.
   WallCertificate certify(const Breach& breach, const Palpated& palpated) const {
-    WallCertificate out{.wall = breach.wall.wall, .at_m = breach.wall.at_m};
-    out.told =
-        observer_.detect(felt_, observer_.felt(palpated, {}), out.wall, *out.at_m, Perception{});
-    out.end_force_N = observer_.end_force_N(felt_, kTapped_m);
-    return out;
+    return certify(breach, palpated, felt_, perception_);
   }
 
  private:
@@ -91,12 +93,14 @@ class Tried {
   std::unique_ptr<volume::ForceField> field_;
   Palpated palpated_;
   Observer::Felt felt_;
+  Perception perception_;
 };
 
 double score(const WallCertificate& wall) {
   const auto d = wall.d_prime();
   if (!d) return -1e300;
-  return wall.told.fa ? std::min(*d, *wall.told.b - *wall.told.fa + 2.0) : *d;
+  const double short_by = std::max(0.0, WallCertificate::kLeastForetold - wall.foretold);
+  return (wall.told.fa ? std::min(*d, *wall.told.b - *wall.told.fa + 2.0) : *d) - kShort * short_by;
 }
 
 struct Attempt {
@@ -139,7 +143,8 @@ void make_even(std::vector<Wanted>& walls) {
 }
 
 /// d′ of every wall under other assumptions.
-std::vector<Sensitivity> sensitivities(const Tried& tried, const std::vector<Wanted>& walls) {
+std::vector<Sensitivity> sensitivities(const Tried& tried, const std::vector<Wanted>& walls,
+                                       const Perception& perception) {
   const std::vector<std::pair<const char*, double Perception::*>> fields{
       {"force_weber", &Perception::force_weber},
       {"force_threshold_N", &Perception::force_threshold_N},
@@ -147,12 +152,13 @@ std::vector<Sensitivity> sensitivities(const Tried& tried, const std::vector<Wan
   std::vector<Sensitivity> out;
   for (const auto& [assumption, field] : fields)
     for (const double factor : {0.5, 2.0}) {
-      Perception other;
+      Perception other = perception;
       other.*field *= factor;
+      const auto felt = tried.felt(other);
       Sensitivity one{.assumption = assumption, .value = other.*field};
       for (std::size_t w = 0; w < walls.size(); ++w)
         if (const Attempt* best = walls[w].best())
-          one.d_prime[w] = tried.certify(best->breach, best->palpated, other).d_prime();
+          one.d_prime[w] = tried.certify(best->breach, best->palpated, felt, other).d_prime();
       out.push_back(std::move(one));
     }
   return out;
@@ -267,7 +273,8 @@ WallCertificate certificate_of(Wall wall, const Wanted& wanted) {
   WallCertificate out = wanted.best()->certificate;
   if (wall == Wall::anterior) return out;
   for (const Attempt& attempt : wanted.attempts)
-    out.places.push_back({attempt.breach.wall.at_m, attempt.certificate.told});
+    out.places.push_back(
+        {attempt.breach.wall.at_m, attempt.certificate.told, attempt.certificate.foretold});
   return out;
 }
 
@@ -288,20 +295,24 @@ struct Judged {
 };
 
 core::Result<Judged> judge(const volume::Volume& ct, const models::PalpationModel& model,
-                           const CarvingPlan& plan, Effort effort, const core::Progress& progress) {
+                           const CarvingPlan& plan, Effort effort, const Perception& perception,
+                           const core::Progress& progress) {
   Judged out{TRY(place(ct, model.transfer, plan)), {}, {}, {}};
   const core::Progress resampling =
       progress ? [&](double share) { return progress(kBoneShare * share); } : core::Progress();
   out.bone = TRY(bone_about(ct, model.transfer, plan, out.placed, resampling));
   const auto bone = TRY(prepared_ct(ct, model.transfer, out.placed));
   const Places places(bone, model.transfer, plan, out.placed);
-  auto tried = TRY(Tried::make(out.bone, model, out.placed, places.from_m()));
+  auto tried = TRY(Tried::make(out.bone, model, out.placed, places.from_m(), perception));
   out.walls = TRY(try_walls(places, tried, plan, effort, progress));
   if (plan.even) make_even(out.walls);
   out.certificate.preparation = plan.preparation;
+  out.certificate.perception = perception;
+  out.certificate.from_m = places.from_m();
   for (std::size_t w = 0; w < out.walls.size(); ++w)
     out.certificate.walls.push_back(certificate_of(volume::kWalls[w], out.walls[w]));
-  if (effort == Effort::whole) out.certificate.sensitivities = sensitivities(tried, out.walls);
+  if (effort == Effort::whole)
+    out.certificate.sensitivities = sensitivities(tried, out.walls, perception);
   return out;
 }
 
@@ -321,8 +332,9 @@ std::vector<math::Vec2> moves(double most_m) {
 /// The plan as it is, or, where it does not pass and may be moved, the nearest one that passes. If
 /// none does: as it is.
 core::Result<Judged> judge_moved(const volume::Volume& ct, const models::PalpationModel& model,
-                                 const CarvingPlan& plan, const core::Progress& progress) {
-  auto as_planned = judge(ct, model, plan, Effort::whole, progress);
+                                 const CarvingPlan& plan, const Perception& perception,
+                                 const core::Progress& progress) {
+  auto as_planned = judge(ct, model, plan, Effort::whole, perception, progress);
   if (as_planned && as_planned->certificate.passes()) return as_planned;
   if (!as_planned) return as_planned;
   const auto& tract = as_planned->placed.tract;
@@ -330,7 +342,7 @@ core::Result<Judged> judge_moved(const volume::Volume& ct, const models::Palpati
     CarvingPlan other = plan;
     const math::Vec3 by = move.x() * tract.medial + move.y() * tract.superior;
     other.entry_m += by, other.target_m += by;
-    auto moved = judge(ct, model, other, Effort::whole, progress);
+    auto moved = judge(ct, model, other, Effort::whole, perception, progress);
     if (!moved && moved.error().code == core::Errc::cancelled) return moved;
     if (!moved || !moved->certificate.passes()) continue;
     moved->moved_m = move;
@@ -346,20 +358,22 @@ core::Error no_channel() {
 }  // namespace
 
 core::Result<Made> make(const volume::Volume& ct, const models::PalpationModel& model,
-                        const CarvingPlan& plan, const core::Progress& progress) {
+                        const CarvingPlan& plan, const core::Progress& progress,
+                        const Perception& perception) {
   if (!plan.drilled) return Made{TRY(carve(ct, model.transfer, plan, progress)), {}};
-  const auto judged = TRY(judge_moved(ct, model, plan, progress));
+  const auto judged = TRY(judge_moved(ct, model, plan, perception, progress));
   if (!plan.breach) return judged.made({});
   return judged.made(judged.walls[std::size_t(plan.breach->wall)].best()->breach);
 }
 
 core::Result<std::vector<Made>> make_five(const volume::Volume& ct,
                                           const models::PalpationModel& model, CarvingPlan plan,
-                                          const core::Progress& progress) {
+                                          const core::Progress& progress,
+                                          const Perception& perception) {
   if (!plan.drilled) return no_channel();
   plan.breach.reset();
   plan.even = true;
-  const auto judged = TRY(judge_moved(ct, model, plan, progress));
+  const auto judged = TRY(judge_moved(ct, model, plan, perception, progress));
   if (!judged.certificate.passes())
     return core::Error{core::Errc::out_of_range,
                        judged.certificate.warning() + "; move entry or target"};
@@ -372,11 +386,11 @@ core::Result<Certificate> certify(const volume::Volume& ct, const models::Palpat
                                   const CarvingPlan& plan, Effort effort,
                                   const core::Progress& progress) {
   if (!plan.drilled) return no_channel();
-  return TRY(judge(ct, model, plan, effort, progress)).certificate;
+  return TRY(judge(ct, model, plan, effort, {}, progress)).certificate;
 }
 
 core::Result<Certificate> certify_drilled(const volume::Volume& drilled, const Case& made,
-                                          const Truth& truth) {
+                                          const Truth& truth, const Perception& perception) {
   if (made.planned) return no_channel();
   if (!truth.breached || *truth.breached == Wall::anterior)
     return core::Error{
@@ -391,12 +405,13 @@ core::Result<Certificate> certify_drilled(const volume::Volume& drilled, const C
   const double mouth_m = enclosed.empty() ? 0.25 * tract.length_m : enclosed.front();
   const Observer observer(made.model, tract, mouth_m + kPastMouth_m);
   const auto field = TRY(volume::ForceField::make(drilled, made.model.transfer, made.model.field));
-  const auto felt = observer.felt(TRY(observer.palpate(field)), {});
+  const auto felt = observer.felt(TRY(observer.palpate(field)), perception);
   const double at_m = tract.depth_of(*truth.breach_m);
-  Certificate out{.preparation = made.preparation};
+  Certificate out{.preparation = made.preparation, .perception = perception};
   out.walls.push_back({.wall = *truth.breached,
                        .at_m = at_m,
-                       .told = observer.detect(felt, felt, *truth.breached, at_m, {}),
+                       .told = observer.detect(felt, felt, *truth.breached, at_m, perception),
+                       .foretold = observer.foretold(felt, felt, *truth.breached, at_m, perception),
                        .end_force_N = observer.end_force_N(felt, kTapped_m)});
   return out;
 }

@@ -16,10 +16,13 @@ struct Made : Carved {
 /// In filled bone each side wall is tried every millimetre of the tract's ring, where all four
 /// outer faces lie within 14 mm of the axis; a breach without a stated place goes to the best. In
 /// published bone it goes where volume::place_breach puts it. The best place has the greatest of
-/// min(K, B, B − FA + 2), so that 2.5 is what a certificate asks for.
+/// min(K, B, B − FA + 2), so that 2.5 is what a certificate asks for, among those of which a hand is
+/// foretold to be right as often as it asks.
+/// @param perception  of whom the case is for
 /// Errors: those of `carve` and of models::PalpationRuntime::make.
 core::Result<Made> make(const volume::Volume& ct, const models::PalpationModel& model,
-                        const CarvingPlan& plan, const core::Progress& progress = {});
+                        const CarvingPlan& plan, const core::Progress& progress = {},
+                        const Perception& perception = {});
 
 /// Five cases of one tract, a breach of each wall, all as hard to tell as can be: the breach of the
 /// hardest wall lies where it is told best, each other one where it passes and is told as well as
@@ -29,7 +32,8 @@ core::Result<Made> make(const volume::Volume& ct, const models::PalpationModel& 
 /// planned channel.
 core::Result<std::vector<Made>> make_five(const volume::Volume& ct,
                                           const models::PalpationModel& model, CarvingPlan plan,
-                                          const core::Progress& progress = {});
+                                          const core::Progress& progress = {},
+                                          const Perception& perception = {});
 
 /// How much is tried: one place of each wall, in the middle of the ring, or every place.
 enum class Effort { first, whole };
@@ -48,6 +52,6 @@ core::Result<Certificate> certify(const volume::Volume& ct, const models::Palpat
 /// those of models::PalpationRuntime::make; bad_input for a planned channel; out_of_range for an
 /// anterior breach, which has no other places, and for a case without a breach.
 core::Result<Certificate> certify_drilled(const volume::Volume& drilled, const Case& made,
-                                          const Truth& truth);
+                                          const Truth& truth, const Perception& perception = {});
 
 }  // namespace tractus::cases

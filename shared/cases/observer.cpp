@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
+#include <ranges>
 
 #include "core/try.hpp"
 
@@ -18,11 +20,12 @@ using volume::Wall;
 constexpr double kDepthStep_m = 0.0005;
 constexpr double kShortOfEnd_m = 0.0015;  // places this near to the end feel the end
 constexpr double kMostTilt_rad = 0.35;
+constexpr double kTipFirst_rad = 0.07;  // beyond the bend's 3δ/2L
 struct MotionGrid {
   double step_m;
   int leans;
 };
-constexpr std::array<MotionGrid, kMotions> kGrids{{{0.00025, 49}, {0.0005, 61}}};
+constexpr std::array<MotionGrid, kMotions> kGrids{{{0.00025, 49}, {0.0005, 61}, {0.0005, 61}}};
 constexpr double kFirstPush_m = -0.003, kPushStep_m = 0.00025;
 constexpr int kPushes = 69;                                  // up to 14 mm beyond the end
 constexpr double kNearAlong_m = 0.004, kFarAlong_m = 0.007;  // what Contrast::along compares with
@@ -31,6 +34,9 @@ constexpr double kAtBreach_m = 0.0015,
 constexpr double kHardest_N = 0.6, kHardestTap_N = 3.0;
 constexpr double kNoTwin_m = 0.007;
 constexpr double kOverFalse = 2.0;  // a worst whole place counts as B − FA + 2
+constexpr std::array kAnyBears{Motion::tilt, Motion::parallel};
+constexpr std::array kTipBears{Motion::tip_first};
+constexpr double kLooks = 6.0, kAskedOfEnd_N = 0.3, kWithinTap_m = 0.003;  // of `foretold`
 constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
 
 /// The handle whose straight probe has its tip at `tip_m` and lies along `along`.
@@ -40,6 +46,24 @@ math::Pose handle_at(const Tract& tract, const Vec3& tip_m, const Vec3& along, d
   rotation.col(0) = (tract.medial - tract.medial.dot(along) * along).normalized();
   rotation.col(1) = along.cross(rotation.col(0));
   return {tip_m - length_m * along, math::Quat(rotation)};
+}
+
+/// The handle that presses so far towards a wall; none beyond a motion's reach.
+std::optional<math::Pose> pressing(const Tract& tract, Motion motion, double depth_m, double lean_m,
+                                   const Vec3& outward, double length_m) {
+  double turn = 0.0, along_m = depth_m, aside_m = lean_m;
+  if (motion == Motion::tilt) {
+    turn = std::atan2(lean_m, depth_m);
+    if (turn > kMostTilt_rad) return std::nullopt;
+    along_m = depth_m * std::cos(turn), aside_m = depth_m * std::sin(turn);
+  } else if (motion == Motion::tip_first) {
+    turn = 1.5 * lean_m / length_m + kTipFirst_rad;
+    along_m = depth_m - lean_m * std::sin(turn);
+    aside_m = tract.radius_m + lean_m * std::cos(turn);
+  }
+  const Vec3 along = std::cos(turn) * tract.axis + std::sin(turn) * outward;
+  return handle_at(tract, tract.entry_m + along_m * tract.axis + aside_m * outward, along,
+                   length_m);
 }
 
 Vec3 outwards_of(const Tract& tract, std::size_t wall) {
@@ -92,6 +116,20 @@ double noise_N2(double mean_N, const Perception& p) {
   return 1.5 * squared(p.force_threshold_N) + squared(p.force_weber * mean_N);
 }
 
+double normal_cdf(double x) { return 0.5 * std::erfc(-x / std::numbers::sqrt2); }
+
+/// Observer::foretold's integral.
+double share_of_the_greatest(double d, const std::array<double, 5>& rivals) {
+  constexpr double kStep = 0.05, kReach = 6.0;
+  double sum = 0.0;
+  for (double z = -kReach; z <= kReach; z += kStep) {
+    double p = kStep * std::exp(-0.5 * z * z) * std::numbers::inv_sqrtpi / std::numbers::sqrt2;
+    for (const double rival : rivals) p *= normal_cdf(d + z - rival);
+    sum += p;
+  }
+  return sum;
+}
+
 }  // namespace
 
 Observer::Observer(const models::PalpationModel& model, const Tract& tract, double from_m)
@@ -106,6 +144,7 @@ double Observer::depth_m(int i) const noexcept { return from_m_ + i * kDepthStep
 void Observer::press(const PalpationRuntime& probe, std::size_t wall, int first, int last,
                      Palpated& out) const {
   const Vec3 outward = outwards_of(tract_, wall);
+  const double length_m = model_.base.length_m;
   for (std::size_t motion = 0; motion < kMotions; ++motion) {
     const MotionGrid& grid = kGrids[motion];
     auto& into = out.side_N[motion][wall];
@@ -114,15 +153,11 @@ void Observer::press(const PalpationRuntime& probe, std::size_t wall, int first,
       laws::PalpationState state;
       for (int j = 0; j < grid.leans; ++j) {
         const double lean_m = j * grid.step_m, depth = depth_m(i);
-        const double turn = motion == 0 ? std::atan2(lean_m, depth) : 0.0;
-        if (turn > kMostTilt_rad) break;
-        const Vec3 along = std::cos(turn) * tract_.axis + std::sin(turn) * outward;
-        const Vec3 tip =
-            tract_.entry_m + depth * along + (motion == 0 ? Vec3::Zero() : Vec3(lean_m * outward));
-        const auto X_VH = handle_at(tract_, tip, along, model_.base.length_m);
-        const auto step = probe.step(X_VH, state);
+        const auto X_VH = pressing(tract_, Motion(motion), depth, lean_m, outward, length_m);
+        if (!X_VH) break;
+        const auto step = probe.step(*X_VH, state);
         into[std::size_t(i * grid.leans + j)] =
-            float(-(X_VH.q * step.wrench_H.force_N).dot(outward));
+            float(-(X_VH->q * step.wrench_H.force_N).dot(outward));
       }
     }
   }
@@ -218,7 +253,8 @@ double Observer::feature(const Felt& felt, std::size_t motion, Contrast contrast
 }
 
 Detectability Observer::of_side(const Felt& whole, const Felt& breached, std::size_t wall,
-                                double at_m, const Perception& perception) const {
+                                double at_m, const Perception& perception,
+                                std::span<const Motion> motions) const {
   struct Place {
     double f, mean_N, variance_N2;
     std::size_t wall;
@@ -229,7 +265,8 @@ Detectability Observer::of_side(const Felt& whole, const Felt& breached, std::si
   double best_score = -1e300;
   std::vector<Place> places;
   std::vector<double> means;
-  for (std::size_t motion = 0; motion < kMotions; ++motion)
+  for (const std::size_t motion :
+       motions | std::views::transform([](Motion m) { return std::size_t(m); }))
     for (const Contrast contrast : core::values<Contrast>())
       for (int j = 1; j < kGrids[motion].leans; ++j) {
         places.clear(), means.clear();
@@ -298,8 +335,22 @@ Detectability Observer::of_end(const Felt& whole, const Felt& breached,
 
 Detectability Observer::detect(const Felt& whole, const Felt& breached, Wall wall, double at_m,
                                const Perception& perception) const {
-  if (wall != Wall::anterior) return of_side(whole, breached, std::size_t(wall), at_m, perception);
+  if (wall != Wall::anterior)
+    return of_side(whole, breached, std::size_t(wall), at_m, perception, kAnyBears);
   return &whole == &breached ? Detectability{} : of_end(whole, breached, perception);
+}
+
+double Observer::foretold(const Felt& whole, const Felt& breached, Wall wall, double at_m,
+                          const Perception& once) const {
+  Perception perception = once;
+  perception.force_weber /= std::sqrt(kLooks), perception.force_threshold_N /= std::sqrt(kLooks);
+  const double lacking_N = std::max(0.0, kAskedOfEnd_N - end_force_N(whole, kWithinTap_m)),
+               open = lacking_N / std::sqrt(noise_N2(kAskedOfEnd_N, perception));
+  if (wall == Wall::anterior)
+    return share_of_the_greatest(open + *of_end(whole, breached, perception).k, {});
+  const auto told = of_side(whole, breached, std::size_t(wall), at_m, perception, kTipBears);
+  if (!told.b) return 0.0;
+  return share_of_the_greatest(*told.b, {told.fa_wall == wall ? 0.0 : *told.fa, open});
 }
 
 double Observer::end_force_N(const Felt& whole, double within_m) const {

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "models/palpation_runtime.hpp"
@@ -20,12 +21,13 @@ struct Perception {
 
 /// How the hand presses on a side wall.
 enum class Motion {
-  tilt,      ///< the probe turns about the mouth
-  parallel,  ///< the handle moves aside
+  tilt,       ///< the probe turns about the mouth
+  parallel,   ///< the handle moves aside
+  tip_first,  ///< it moves aside and turns with the shank's bend, so that the tip bears (ADR-0043)
 };
 constexpr auto words(Motion) {
   return std::to_array<core::Word<Motion>>(
-      {{Motion::tilt, "tilt"}, {Motion::parallel, "parallel"}});
+      {{Motion::tilt, "tilt"}, {Motion::parallel, "parallel"}, {Motion::tip_first, "tip_first"}});
 }
 /// With what a place is compared.
 enum class Contrast {
@@ -39,7 +41,7 @@ constexpr auto words(Contrast) {
 using core::name;
 
 inline constexpr std::size_t kSideWalls = 4;  ///< the first of volume::kWalls
-inline constexpr std::size_t kMotions = 2;
+inline constexpr std::size_t kMotions = 3;
 
 /// The force with which a tract answers slow presses, against each press, N.
 struct Palpated {
@@ -62,8 +64,8 @@ struct Detectability {
 };
 
 /// Presses every side wall at every depth from `from_m` on, tilting about the mouth by at most 0.35
-/// rad and moving aside by at most 30 mm, and taps the end from −3 to +14 mm. Quasi-static: each
-/// press starts from the shank's deflection in the one before, less deep.
+/// rad, moving aside by at most 30 mm, and so with the tip first, and taps the end from −3 to +14
+/// mm. Quasi-static: each press starts from the shank's deflection in the one before, less deep.
 ///
 /// R is the force against the press. The hand's wander blurs it in depth and lean: mean μ, variance
 /// v. f is μ less what it is compared with (Contrast), the noise of a comparison
@@ -75,7 +77,8 @@ struct Detectability {
 ///
 /// as own (after signal detection theory); lean, motion and contrast are those of the greatest
 /// min(K, B, B − FA + 2), leans at which the median R of whole bone is over 0.6 N left out. K of the
-/// end is that of μ over taps. Left out: torque, friction, the hand's impedance, dynamics. Not thread-safe.
+/// end is that of μ over taps. They are over tilt and parallel presses, where the shank may bear
+/// instead of the tip; `foretold` is over presses with the tip first. Left out: torque, friction, the hand's impedance, dynamics. Not thread-safe.
 class Observer {
  public:
   /// @param from_m  depth of the first place that is felt
@@ -104,6 +107,17 @@ class Observer {
   /// is not known: then places within 7 mm of it count for no whole ones, and there is no K.
   Detectability detect(const Felt& whole, const Felt& breached, volume::Wall wall, double at_m,
                        const Perception& perception) const;
+  /// Share of right answers that a hand is foretold of which the tip bears, as the simulated one
+  /// presses, and which looks six times at what it answers from:
+  ///
+  ///     P = ∫ φ(x − d) Π Φ(x − m_i) dx                     [Hacker1979], there with all m_i = 0
+  ///
+  /// the chance that the evidence of the breach is the greatest of six answers, all normal. A side
+  /// wall's breach has d = B, and as rivals the worst whole place (m = FA; unless in this wall), a
+  /// whole end that lacks something of 0.3 N, two walls, and "no breach"; an anterior one has d = K,
+  /// more by what its whole end lacks. K, B, FA with noise of the mean of six looks.
+  double foretold(const Felt& whole, const Felt& breached, volume::Wall wall, double at_m,
+                  const Perception& perception) const;
   /// The greatest mean force of a tap within `within_m` beyond the end, N.
   double end_force_N(const Felt& whole, double within_m) const;
 
@@ -114,7 +128,7 @@ class Observer {
   double feature(const Felt& felt, std::size_t motion, Contrast contrast, std::size_t wall, int i,
                  int j) const;
   Detectability of_side(const Felt& whole, const Felt& breached, std::size_t wall, double at_m,
-                        const Perception& perception) const;
+                        const Perception& perception, std::span<const Motion> motions) const;
   Detectability of_end(const Felt& whole, const Felt& breached, const Perception& perception) const;
 
   models::PalpationModel model_;

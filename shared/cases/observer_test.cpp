@@ -1,9 +1,13 @@
 #include "cases/observer.hpp"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <cmath>
+#include <filesystem>
 
+#include "cases/certificate.hpp"
+#include "core/file.hpp"
 #include "volume/carve.hpp"
 
 namespace tractus {
@@ -109,6 +113,55 @@ TEST(AnIdealObserver, TellsNothingOfABreachThatIsNone) {
   EXPECT_EQ(observer.detect(felt, again, Wall::medial, 0.020, {}).k, 0.0);
   EXPECT_EQ(observer.detect(felt, again, Wall::anterior, 0.034, {}).k, 0.0);
   EXPECT_FALSE(observer.detect(felt, felt, Wall::medial, 0.020, {}).k);  // no twin, no K
+}
+
+/// Of a hand whose tip bears.
+double foretold(const volume::Volume& bone, Wall wall, double at_m, bool breached,
+                const Perception& perception = {}) {
+  models::PalpationModel model;
+  const Observer observer(model, kTract, 0.010);
+  volume::Volume whole = bone, holed = bone;
+  volume::drill(whole, kTract, 0.008, std::nullopt, 0.0);
+  const auto box = volume::drill(holed, kTract, 0.008, hole(wall, at_m), 0.0);
+  auto made = volume::ForceField::make(whole, model.transfer, model.field);
+  auto& field = *made;
+  const auto palpated = observer.palpate(field);
+  if (breached) field.update(holed, box);
+  const auto near = observer.palpate_near(field, *palpated, wall, at_m);
+  EXPECT_TRUE(palpated && near);
+  return observer.foretold(observer.felt(*palpated, perception), observer.felt(*near, perception),
+                           wall, at_m, perception);
+}
+
+TEST(AForetoldHand, IsRightInSolidBoneAndLessSoWithACoarserSense) {
+  const auto bone = bone_rod(900, 0.001);
+  EXPECT_GT(foretold(bone, Wall::medial, 0.020, true), WallCertificate::kLeastForetold);
+  EXPECT_LT(foretold(bone, Wall::medial, 0.020, true, {.force_threshold_N = 0.6}), 0.75);
+}
+
+TEST(AForetoldHand, GuessesOneOfSixWhereThereIsNothing) {
+  // An end that is as before, and holds: six answers of equal evidence, one of six right.
+  EXPECT_NEAR(foretold(bone_rod(900, 0.001), Wall::anterior, 0.034, false), 1.0 / 6.0, 1e-3);
+}
+
+TEST(AForetoldHand, TakesAPersonsOwnThresholds) {
+  const auto path = std::filesystem::temp_directory_path() /
+                    ("tractus-observer-" + std::to_string(::getpid()) + ".json");
+  const auto with = [&](const core::Json& perception) {
+    core::Json file = {{"format", "tractus-observer/1"}, {"perception", perception}};
+    EXPECT_TRUE(core::write_json(path, file));
+    return read_perception(path);
+  };
+  const auto read = with({{"force_threshold_N", 0.025}, {"force_weber", 0.12}});
+  ASSERT_TRUE(read) << read.error().what;
+  EXPECT_EQ(read->force_threshold_N, 0.025);
+  EXPECT_EQ(read->force_weber, 0.12);
+  EXPECT_EQ(read->wander_m, Perception{}.wander_m);
+  const auto wrong = with({{"force_threshold_N", -1.0}, {"force_weber", 0.12}});
+  ASSERT_FALSE(wrong);
+  EXPECT_NE(wrong.error().what.find("force_threshold_N"), std::string::npos);
+  EXPECT_FALSE(with({{"force_threshold_N", 0.03}}));
+  std::filesystem::remove(path);
 }
 
 TEST(AnIdealObserver, TellsLessWithACoarserSense) {

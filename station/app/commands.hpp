@@ -21,6 +21,7 @@ core::Result<int> trust_signer(const Options& options);
 core::Result<int> record_room(const Options& options);
 core::Result<int> self_test(const Options& options);
 core::Result<int> calibrate(const Options& options);
+core::Result<int> measure_thresholds(const Options& options);
 
 /// From a signal handler: ends what is running in good order.
 void ask_to_stop() noexcept;

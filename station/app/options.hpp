@@ -54,6 +54,10 @@ struct Options {
   double for_s = 10.0;         ///< that a hand moves the handle about
   int due_days = 90;
   bool stand_by = false;  ///< somebody does: nobody is asked at the terminal
+  // threshold
+  std::filesystem::path out;
+  int questions = 35;  ///< of each stimulus
+  std::uint64_t seed = 1;
   // upload
   double wait_s = 0.0;
   // align

@@ -71,6 +71,26 @@ void add_calibrate(CLI::App& app, Options& options) {
       "Example:\n  tractus-station calibrate --device lambda6 --data st --who Ada --due-days 90");
 }
 
+void add_threshold(CLI::App& app, Options& options) {
+  add_data(app, options, true);
+  add_server(app, options, false);
+  add_device(app, options.setup.device, "; a simulated one is held by a SIMULATED person",
+             devices::all(devices::DeviceKind::handle));
+  add_sdk(app, options);
+  app.add_option("--who", options.who, "who answers, as the file names them")->required();
+  app.add_option("--out", options.out, "the new file, JSON; tractus carve --observer takes it")
+      ->required();
+  app.add_option("--questions", options.questions, "of each of three stimuli")
+      ->check(CLI::Range(10, 200))
+      ->capture_default_str();
+  app.add_option("--seed", options.seed, "of what is drawn by chance")->capture_default_str();
+  app.footer(
+      "Two-interval forced choices: the least push that is felt, the least difference from 1 N, "
+      "the "
+      "least gap of a wall; some ten minutes.\n"
+      "Example:\n  tractus-station threshold --device lambda6 --data st --who Ada --out ada.json");
+}
+
 void add_record(CLI::App& app, Options& options) {
   sensors::RecordSetup& record = options.record;
   app.add_option("--out", options.room, "the recording's new folder; must not exist")->required();
@@ -129,6 +149,9 @@ void add_technician(CLI::App& app, Options& options) {
       *add_command(app, options, calibrate, "calibrate",
                    "find and check the zero of the device, and note when calibration is due again"),
       options);
+  add_threshold(*add_command(app, options, measure_thresholds, "threshold",
+                             "measure what a person can tell by force at this device"),
+                options);
   add_align(
       *add_command(app, options, align_room, "align",
                    "touch three points with the handle so that the headset shows it in its place"),

@@ -1,9 +1,6 @@
 /// Live tuning by an expert: feel a scenario on the rig, nudge its eight parameters by keys, save a
 /// new version.
 #include <fmt/format.h>
-#include <poll.h>
-#include <termios.h>
-#include <unistd.h>
 
 #include <cstdio>
 #include <optional>
@@ -15,6 +12,7 @@
 #include "station/app/commands.hpp"
 #include "station/app/exchange.hpp"
 #include "station/app/probing.hpp"
+#include "station/app/terminal_keys.hpp"
 #include "station/app/trial_epilogue.hpp"
 #include "station/session/tuning.hpp"
 
@@ -26,33 +24,6 @@ using session::Tuning;
 constexpr const char* kKeys =
     "keys: 1-8 choose a parameter, + and - nudge it by 5 %, u takes back, s saves a new version, "
     "q ends the trial\n";
-
-/// The terminal without waiting for a line, as long as this lives.
-class RawTerminal {
- public:
-  RawTerminal() {
-    if (!::isatty(STDIN_FILENO) || ::tcgetattr(STDIN_FILENO, &before_) != 0) return;
-    termios raw = before_;
-    raw.c_lflag &= ~tcflag_t(ICANON | ECHO);
-    changed_ = ::tcsetattr(STDIN_FILENO, TCSANOW, &raw) == 0;
-  }
-  ~RawTerminal() {
-    if (changed_) ::tcsetattr(STDIN_FILENO, TCSANOW, &before_);
-  }
-  RawTerminal(const RawTerminal&) = delete;
-  RawTerminal& operator=(const RawTerminal&) = delete;
-
- private:
-  termios before_{};
-  bool changed_ = false;
-};
-
-std::optional<char> key() {
-  pollfd input{STDIN_FILENO, POLLIN, 0};
-  char c = 0;
-  if (::poll(&input, 1, 0) <= 0 || ::read(STDIN_FILENO, &c, 1) != 1) return std::nullopt;
-  return c;
-}
 
 /// Keys into nudges, nudges into the running trial.
 class Expert {
@@ -111,7 +82,7 @@ core::Result<session::TrialReport> one_trial(const Options& options,
   auto trial = TRY(session::probing_trial(folder, task, options.rig));
   say_calibration_due(folder, options.rig.device);
   TRY(trial.runner->run([&](const session::TrialSnapshot&) {
-    for (auto c = key(); c; c = key())
+    for (auto c = typed_key(); c; c = typed_key())
       if (!expert.press(*c, *trial.rig)) return false;
     return !asked_to_stop();
   }));

@@ -26,7 +26,7 @@ volume::Tract tract_in_device(const volume::Tract& tract_V, const math::Pose& X_
 
 double enclosed_from_m(const volume::Volume& volume, const volume::TransferFunction& transfer,
                        const volume::Tract& tract) {
-  constexpr double kDeepest_m = 0.020, kStep_m = 0.001, kOuter_m = 0.012;
+  constexpr double kDeepest_m = 0.020, kStep_m = 0.001, kOuter_m = 0.014;
   const volume::WallFinder finder(volume, transfer);
   const auto walled = [&](double at_m) {
     return std::ranges::all_of(volume::kWalls, [&](volume::Wall wall) {

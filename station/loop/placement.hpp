@@ -22,7 +22,7 @@ math::Pose place_device(const volume::Tract& tract, double probe_length_m,
 volume::Tract tract_in_device(const volume::Tract& tract_V, const math::Pose& X_VD,
                               const math::Vec3& pose_offset_m);
 
-/// Depth from which all four side walls are found with their outer faces within 12 mm, as a surgeon
+/// Depth from which all four side walls are found with their outer faces within 14 mm, as a surgeon
 /// sees it in the planning images, m; 0 where that is nowhere in the first 20 mm.
 double enclosed_from_m(const volume::Volume& volume, const volume::TransferFunction& transfer,
                        const volume::Tract& tract);

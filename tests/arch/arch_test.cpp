@@ -77,8 +77,8 @@ const std::map<std::string, Names> kAllowed = {
       "shared/models", "shared/trial", "shared/drilling", "station/devices", "station/safety"}},
     // Tests of devices and of this machine: every force passes through the loop's limiters.
     {"station/check",
-     {"shared/core", "shared/math", "shared/plot", "station/devices", "station/loop",
-      "station/safety"}},
+     {"shared/core", "shared/math", "shared/plot", "shared/statistics", "station/devices",
+      "station/loop", "station/safety"}},
     // How volumes are stored in bricks: those that are here are not fetched.
     {"station/uplink",
      {"shared/core", "shared/trial", "shared/wire", "shared/cases", "shared/volume"}},

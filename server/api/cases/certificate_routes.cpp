@@ -110,6 +110,9 @@ std::vector<NamedSchema> certificate_schemas() {
                {"contrast", nullable(one_of<cases::Contrast>("With what it compares"))},
                {"lean_m", number("m", "Lean of the tip there, in metres")},
                {"force_N", number("N", "Force of whole bone there, in newtons")},
+               {"foretold", number("1",
+                                   "Share of right answers that a hand is foretold which "
+                                   "presses with the tip first")},
                {"end_force_N", nullable(number("N", "Force of the whole end, in newtons"))},
                {"why_not", nullable(text("Why no breach was tried, as a sentence"))},
                {"places", ref("TriedPlaces")}})},

@@ -29,7 +29,7 @@ struct CarveOptions {
   std::string volume, out, title, source, model, key, png;
   std::string entry, target, length, radius = "1.5", midline;
   std::string breach, breach_depth, breach_at, spacing = "0.35", margin = "20";
-  std::string preparation = "published", envelope, may_move;
+  std::string preparation = "published", envelope, observer, may_move;
   int envelope_label = 1;
   bool no_channel = false, certified = false;
   bool json = false;
@@ -102,6 +102,11 @@ core::Result<cases::CarvingPlan> plan_of(const CarveOptions& o) {
   if (o.certified && o.no_channel)
     return Error{Errc::bad_input, "--certified: a planned channel has no walls to feel"};
   return plan;
+}
+
+core::Result<cases::Perception> perception_of(const CarveOptions& o) {
+  if (o.observer.empty()) return cases::Perception{};
+  return cases::read_perception(o.observer);
 }
 
 core::Result<models::PalpationModel> model_of(const CarveOptions& o) {
@@ -285,8 +290,10 @@ Outcome write_five(const CarveOptions& o, const models::PalpationModel& model,
 }
 
 Outcome run_five(const CarveOptions& o, const models::PalpationModel& model,
-                 const volume_io::Imported& ct, const cases::CarvingPlan& plan) {
-  const auto five = cases::make_five(ct.volume, model, plan, core::terminal_progress("carving"));
+                 const volume_io::Imported& ct, const cases::CarvingPlan& plan,
+                 const cases::Perception& perception) {
+  const auto five =
+      cases::make_five(ct.volume, model, plan, core::terminal_progress("carving"), perception);
   if (!five) return about(o.volume, five.error());
   std::error_code failure;
   if (!std::filesystem::create_directory(o.out, failure))
@@ -297,12 +304,14 @@ Outcome run_five(const CarveOptions& o, const models::PalpationModel& model,
 Outcome run_carve(const CarveOptions& o) {
   const auto plan = TRY(plan_of(o));
   const auto model = TRY(model_of(o));
+  const auto perception = TRY(perception_of(o));
   if (std::error_code ignored; std::filesystem::exists(o.out, ignored))
     return Error{Errc::conflict,
                  fmt::format("{}: exists already; remove it or choose another name", o.out)};
   const auto ct = TRY(volume_io::read_volume(o.volume, core::terminal_progress("reading")));
-  if (o.breach == kEvery) return run_five(o, model, ct, plan);
-  const auto carved = cases::make(ct.volume, model, plan, core::terminal_progress("carving"));
+  if (o.breach == kEvery) return run_five(o, model, ct, plan, perception);
+  const auto carved =
+      cases::make(ct.volume, model, plan, core::terminal_progress("carving"), perception);
   if (!carved) return about(o.volume, carved.error());
   if (o.certified && !carved->certificate->passes())
     return about(o.volume,
@@ -358,6 +367,9 @@ void add_options(CLI::App& app, CarveOptions& o) {
                  "label map of the vertebra from another program, with --preparation filled "
                  "(default: the envelope is found in the CT)");
   app.add_option("--envelope-label", o.envelope_label, "label of the vertebra in it (default 1)");
+  app.add_option("--observer", o.observer,
+                 "whom the case must be felt by: a file of tractus-station threshold, whose "
+                 "thresholds of force take the place of the assumed ones");
   app.add_option("--may-move", o.may_move,
                  "if a breach of some wall could not be told by feel: how far entry and target may "
                  "be moved together across the axis to where all can, in mm (default 0)");

@@ -18,7 +18,7 @@ namespace {
 using core::Json;
 
 struct CaseOptions {
-  std::string folder;
+  std::string folder, observer;
   bool json = false;
 };
 
@@ -80,12 +80,15 @@ Outcome show(const CaseOptions& o) {
 }
 
 /// The certificate that the case was made with, or what can be said of a case that has none.
-core::Result<Json> certificate_of(const cases::OpenedCase& opened) {
-  if (opened.definition.certified) return cases::read_certificate(opened);
+/// With an observer's file: its breach tried now, for that person.
+core::Result<Json> certificate_of(const CaseOptions& o, const cases::OpenedCase& opened) {
+  if (opened.definition.certified && o.observer.empty()) return cases::read_certificate(opened);
+  cases::Perception perception;
+  if (!o.observer.empty()) perception = TRY(cases::read_perception(o.observer));
   const auto truth = TRY(cases::read_truth(opened));
   const auto file = TRY(volume::VolumeFile::open(opened.folder / cases::kVolumePart));
   const auto drilled = TRY(file.read_all());
-  return TRY(cases::certify_drilled(drilled, opened.definition, truth)).to_json();
+  return TRY(cases::certify_drilled(drilled, opened.definition, truth, perception)).to_json();
 }
 
 void print_wall(const Json& wall) {
@@ -102,14 +105,14 @@ void print_wall(const Json& wall) {
 /// Exit status 1 where a breach cannot be told.
 Outcome certify(const CaseOptions& o) {
   const auto opened = TRY(cases::open_case(o.folder));
-  const auto certificate = TRY(certificate_of(opened));
+  const auto certificate = TRY(certificate_of(o, opened));
   const bool passes = certificate["passes"].get<bool>();
   if (o.json) {
     std::puts(certificate.dump(2).c_str());
     return passes ? 0 : 1;
   }
-  if (!opened.definition.certified)
-    fmt::print("made without a certificate; its breach against the tract's other places:\n");
+  if (!opened.definition.certified || !o.observer.empty())
+    fmt::print("its breach against the tract's other places:\n");
   for (const Json& wall : certificate["walls"]) print_wall(wall);
   return passes ? 0 : 1;
 }
@@ -137,6 +140,9 @@ Command case_command() {
               each->add_flag("--json", options->json, "print as JSON");
               each->footer("Example:\n  tractus case " + each->get_name() + " l3-left-medial");
             }
+            felt->add_option("--observer", options->observer,
+                             "a person's own thresholds, as tractus-station threshold wrote them: "
+                             "the breach is tried now");
             return [options, check, felt] {
               return check->parsed()  ? verify(*options)
                      : felt->parsed() ? certify(*options)

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "core/file.hpp"
 #include "core/try.hpp"
 #include "volume/volume_file.hpp"
@@ -21,8 +23,10 @@ math::Vec3 vector_of(const core::Json& json) {
 core::Json json_of(const Form& form) {
   const volume::Tract& tract = form.carved.tract;
   return {{"breach", form.breach ? core::Json(std::string(name(*form.breach))) : core::Json()},
-          {"d_prime", form.d_prime},
+          {"at_m", form.at_m},
+          {"chosen", form.chosen},
           {"passes", form.passes},
+          {"from_m", form.from_m},
           {"entry_m", array_of(tract.entry_m)},
           {"axis", array_of(tract.axis)},
           {"medial", array_of(tract.medial)},
@@ -35,8 +39,10 @@ Form form_of(const core::Json& json) {
   Form out;
   if (!json.at("breach").is_null())
     out.breach = core::from_name<Wall>(json.at("breach").get<std::string>());
-  out.d_prime = json.at("d_prime").get<double>();
+  out.at_m = json.at("at_m").get<double>();
+  out.chosen = json.at("chosen").get<bool>();
   out.passes = json.at("passes").get<bool>();
+  out.from_m = json.at("from_m").get<double>();
   out.carved.tract = {.entry_m = vector_of(json.at("entry_m")),
                       .axis = vector_of(json.at("axis")),
                       .length_m = json.at("length_m").get<double>(),
@@ -47,7 +53,8 @@ Form form_of(const core::Json& json) {
 }
 
 std::string volume_name(const Form& form) {
-  return fmt::format("{}.tvol", form.breach ? name(*form.breach) : "whole");
+  return fmt::format("{}{}.tvol", form.breach ? name(*form.breach) : "whole",
+                     form.chosen ? "" : " worst");
 }
 
 core::Result<void> write_forms(const fs::path& folder, const std::vector<Form>& forms) {
@@ -71,23 +78,52 @@ core::Result<std::vector<Form>> read_forms(const fs::path& folder) {
   return out;
 }
 
+/// A place of a wall at which a breach is made.
+struct Chosen {
+  double at_m;
+  bool chosen, passes;
+};
+
+/// The maker's choice; of a side wall that was tried at several places, the worst of them too.
+std::vector<Chosen> chosen_of(const cases::WallCertificate& wall) {
+  std::vector<Chosen> out{{*wall.at_m, true, wall.passes()}};
+  const auto told = [](const cases::TriedPlace& place) {
+    return std::min(place.told.k.value_or(0.0), place.told.b.value_or(0.0));
+  };
+  const auto worst = std::ranges::min_element(wall.places, {}, told);
+  if (worst == wall.places.end() || worst->at_m == *wall.at_m) return out;
+  const cases::WallCertificate there{
+      .wall = wall.wall, .at_m = worst->at_m, .told = worst->told, .foretold = worst->foretold};
+  out.push_back({worst->at_m, false, there.passes()});
+  return out;
+}
+
 core::Result<std::vector<Form>> made_forms(const Pedicle& pedicle,
                                            volume::Preparation preparation) {
+  constexpr double kMove_m = 0.002;
   const auto& ct = ct_of(pedicle);
   const auto model = published_model();
   auto plan = pedicle.plan(preparation);
+  if (preparation == volume::Preparation::filled) plan.may_move_m = kMove_m;
   const auto made = TRY(cases::make(ct, model, plan));
-  std::vector<Form> out{{.breach = {}, .carved = made}};
+  const double from_m = made.certificate->from_m;
+  std::vector<Form> out{{.breach = {}, .from_m = from_m, .carved = made}};
   plan.envelope = made.envelope;
   plan.length_m = made.tract.length_m;
+  plan.target_m += made.tract.entry_m - plan.entry_m;
+  plan.entry_m = made.tract.entry_m;
   for (const cases::WallCertificate& wall : made.certificate->walls) {
     if (!wall.at_m) continue;
-    plan.breach = volume::BreachPlan{.wall = wall.wall};
-    if (wall.wall != Wall::anterior) plan.breach->at_m = wall.at_m;
-    out.push_back({.breach = wall.wall,
-                   .d_prime = wall.d_prime().value_or(0.0),
-                   .passes = wall.passes(),
-                   .carved = TRY(cases::carve(ct, model.transfer, plan))});
+    for (const Chosen& place : chosen_of(wall)) {
+      plan.breach = volume::BreachPlan{.wall = wall.wall};
+      if (wall.wall != Wall::anterior) plan.breach->at_m = place.at_m;
+      out.push_back({.breach = wall.wall,
+                     .at_m = place.at_m,
+                     .chosen = place.chosen,
+                     .passes = place.passes,
+                     .from_m = from_m,
+                     .carved = TRY(cases::carve(ct, model.transfer, plan))});
+    }
   }
   return out;
 }

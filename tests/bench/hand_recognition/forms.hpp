@@ -1,4 +1,4 @@
-/// A pedicle's case in all its forms: whole, and with the breach of each wall that the certificate
+/// A pedicle's case in all its forms: whole, and with breaches of each wall that the certificate
 /// speaks of. Made once, kept in a folder if one is given.
 #pragma once
 
@@ -10,12 +10,15 @@
 
 namespace tractus::bench {
 
-/// One truth of a case, with what the certificate says of it.
+/// One truth of a case, with what its certificate says of it.
 struct Form {
   std::optional<volume::Wall> breach;  ///< none: whole
-  double d_prime = 0.0;                ///< of the breach; 0 of a whole one
-  bool passes = true;                  ///< the certificate's limits; a whole one always does
-  cases::Carved carved;                ///< tract and volume; the rest may be empty
+  double at_m = 0.0;                   ///< depth of the breach along the tract
+  /// Where the maker would put it; else where a breach of this wall is told worst.
+  bool chosen = true;
+  bool passes = true;    ///< the certificate's limits; a whole one always does
+  double from_m = 0.0;   ///< depth of the first place that the certificate speaks of
+  cases::Carved carved;  ///< tract and volume; the rest may be empty
 };
 
 /// How a case is told: "L3 left, filled".
@@ -23,6 +26,7 @@ std::string name_of(const Pedicle& pedicle, volume::Preparation preparation);
 
 models::PalpationModel published_model();
 
+/// The whole one first. Filled tracts may be moved by 2 mm, as the maker does.
 /// Errors: those of cases::make and cases::carve; io, of the folder.
 /// @param keep  where forms are kept and taken from; empty: nowhere
 core::Result<std::vector<Form>> forms_of(const Pedicle& pedicle, volume::Preparation preparation,

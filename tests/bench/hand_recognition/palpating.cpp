@@ -10,7 +10,8 @@ constexpr core::Instant_ns kTick_ns = 250'000;
 }  // namespace
 
 devices::SimulatedAnswer palpated(const Form& form, const models::PalpationRuntime& runtime,
-                                  std::uint64_t seed, double duration_s) {
+                                  std::uint64_t seed, double duration_s,
+                                  const devices::HandSense& sense) {
   const auto model = published_model();
   const volume::Tract& tract = form.carved.tract;
   auto made = devices::find("sim-lambda6")
@@ -24,7 +25,8 @@ devices::SimulatedAnswer palpated(const Form& form, const models::PalpationRunti
                                       .length_m = tract.length_m,
                                       .radius_m = tract.radius_m,
                                       .enclosed_from_m = loop::enclosed_from_m(
-                                          form.carved.volume, model.transfer, tract)}});
+                                          form.carved.volume, model.transfer, tract)},
+                          .sense = sense});
   core::require(made && made->device->open(), "the simulated device opens");
   laws::PalpationState state;
   for (core::Instant_ns now = 0; !made->trainee->done(); now += kTick_ns) {

@@ -11,14 +11,11 @@
 
 #include "core/file.hpp"
 #include "plot/figure.hpp"
-#include "statistics/distributions/distributions.hpp"
 #include "statistics/distributions/proportions.hpp"
 
 namespace tractus {
 namespace bench {
 namespace {
-
-constexpr int kOtherAnswers = 5;
 
 std::string truth_of(const Tried& one) {
   return one.breach ? std::string(name(*one.breach)) : "whole";
@@ -39,13 +36,13 @@ void add_points(const std::vector<Tried>& tried, const std::string& label, const
   plot::Line out{.label = label, .x = {}, .y = {}, .colour = colour, .width_px = 2.0};
   for (const Tried& one : tried) {
     if (!one.breach || one.passes != passes) continue;
-    for (const auto& [dx, dy] : {std::pair{-0.06, 0.0},
-                                 {0.06, 0.0},
+    for (const auto& [dx, dy] : {std::pair{-0.012, 0.0},
+                                 {0.012, 0.0},
                                  {kNone, kNone},
                                  {0.0, -0.012},
                                  {0.0, 0.012},
                                  {kNone, kNone}}) {
-      out.x.push_back(one.d_prime + dx);
+      out.x.push_back(one.foretold + dx);
       out.y.push_back(one.rate() + dy);
     }
   }
@@ -54,24 +51,28 @@ void add_points(const std::vector<Tried>& tried, const std::string& label, const
 
 }  // namespace
 
-double foretold_rate(double d_prime) {
-  constexpr double kStep = 0.01;
-  double sum = 0.0;
-  for (double x = -8.0; x <= d_prime + 8.0; x += kStep)
-    sum += kStep * statistics::normal_density(x - d_prime) *
-           std::pow(statistics::normal_cdf(x), kOtherAnswers);
-  return sum;
+double correlation(const std::vector<Tried>& tried) {
+  double count = 0, mx = 0, my = 0, xx = 0, yy = 0, xy = 0;
+  for (const Tried& one : tried)
+    if (one.breach) mx += one.foretold, my += one.rate(), count += 1.0;
+  mx /= count, my /= count;
+  for (const Tried& one : tried) {
+    if (!one.breach) continue;
+    const double x = one.foretold - mx, y = one.rate() - my;
+    xx += x * x, yy += y * y, xy += x * y;
+  }
+  return xy / std::sqrt(xx * yy);
 }
 
-double correlation(const std::vector<Tried>& tried) {
-  std::vector<std::array<double, 2>> pairs;
-  for (const Tried& one : tried)
-    if (one.breach) pairs.push_back({foretold_rate(one.d_prime), one.rate()});
-  double mx = 0, my = 0, xx = 0, yy = 0, xy = 0;
-  for (const auto& [x, y] : pairs) mx += x / double(pairs.size()), my += y / double(pairs.size());
-  for (const auto& [x, y] : pairs)
-    xx += (x - mx) * (x - mx), yy += (y - my) * (y - my), xy += (x - mx) * (y - my);
-  return xy / std::sqrt(xx * yy);
+double highest_correlation(const std::vector<Tried>& tried) {
+  double count = 0, mean = 0, square = 0, binomial = 0;
+  for (const Tried& one : tried) {
+    if (!one.breach) continue;
+    const double p = one.rate();
+    count += 1.0, mean += p, square += p * p, binomial += p * (1.0 - p) / (one.trials - 1);
+  }
+  const double variance = (square - mean * mean / count) / (count - 1.0);
+  return std::sqrt(std::max(0.0, 1.0 - binomial / count / variance));
 }
 
 void print_table(const std::vector<Tried>& tried) {
@@ -98,21 +99,19 @@ void print_table(const std::vector<Tried>& tried) {
 void write_scatter(const std::filesystem::path& path, const std::vector<Tried>& tried) {
   plot::Panel panel;
   panel.title = "SIMULATED hand: share of right answers of each form of a case";
-  panel.x_label = "d′ of the certificate";
+  panel.x_label = "share right that is foretold";
   panel.y_label = "share right";
   panel.height_px = 420;
-  plot::Line curve{.label = "foretold", .x = {}, .y = {}, .colour = "#888888"};
-  double most = 4.0;
-  for (const Tried& one : tried) most = std::max(most, one.d_prime);
-  for (double d = 0.0; d <= most; d += 0.1)
-    curve.x.push_back(d), curve.y.push_back(foretold_rate(d));
+  plot::Line curve{.label = "as foretold", .x = {}, .y = {}, .colour = "#888888"};
+  curve.x = curve.y = {0.0, 1.0};
   panel.lines.push_back(std::move(curve));
   add_points(tried, "passes", "#1b4f8f", true, panel);
   add_points(tried, "does not pass", "#b03a2e", false, panel);
   plot::Figure figure;
   figure.title = "Recognition against detectability";
   figure.panels = {panel};
-  figure.note = fmt::format("r = {:.2f}", correlation(tried));
+  figure.note =
+      fmt::format("r = {:.2f}, at most {:.2f}", correlation(tried), highest_correlation(tried));
   const std::string text = plot::svg(figure);
   const auto written = core::write_file(path, std::as_bytes(std::span(text)));
   if (written) return;

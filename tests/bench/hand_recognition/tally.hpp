@@ -16,7 +16,10 @@ namespace tractus::bench {
 struct Tried {
   std::string where;  ///< "L3 left, filled"
   std::optional<volume::Wall> breach = {};
-  double d_prime = 0.0;
+  bool chosen = true;  ///< Form::chosen
+  double noise = 1.0;  ///< of the hand's senses, times that of people
+  double at_m = 0.0, rim_m = 0.0;
+  double foretold = 0.0;
   bool passes = true;
   int trials = 0, right = 0;
   std::vector<std::string> said = {};  ///< [trial]: a wall or "whole"
@@ -24,22 +27,16 @@ struct Tried {
   double rate() const { return double(right) / trials; }
 };
 
-/// Share of right answers that d′ foretells where one of six answers is right, by the greatest of
-/// six independent normal evidences, one of them higher by d′ [Hacker1979]:
-///
-///     P = ∫ φ(x − d′) Φ(x)⁵ dx
-///
-/// It is a prediction of an ideal chooser that looks once: K and B are maxima, so an upper bound;
-/// a hand that looks again can be better.
-double foretold_rate(double d_prime);
-
 /// Pearson's r of rate and foretold rate over forms with a breach.
 double correlation(const std::vector<Tried>& tried);
+/// The greatest r that any prediction could have with rates of so few trials: the root of the share
+/// of their variance that is not binomial, 1 − ⟨p(1 − p)/(n − 1)⟩/var p.
+double highest_correlation(const std::vector<Tried>& tried);
 
 /// Rates by wall with Wilson intervals, false alarms of whole forms, confusions.
 void print_table(const std::vector<Tried>& tried);
 
-/// Rate against d′ of each form with a breach, and the foretold curve, as SVG. Ends the program
+/// Rate against foretold rate of each form with a breach, as SVG. Ends the program
 /// when it cannot be written.
 void write_scatter(const std::filesystem::path& path, const std::vector<Tried>& tried);
 
