@@ -133,7 +133,8 @@ core::Result<std::unique_ptr<PageServer>> PageServer::open(Desk& desk,
     if (auto refusal = gate->refusal(head)) return std::move(*refusal);
     return http::Admitted{};
   };
-  service.handle = [files](const http::Request& request) {
+  service.handle = [gate, files](const http::Request& request) {
+    if (auto refusal = gate->refusal(request)) return std::move(*refusal);
     http::Response out = files->answer(request);
     http::add_security_headers(out);
     return out;
