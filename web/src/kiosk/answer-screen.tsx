@@ -85,7 +85,7 @@ export function AnswerScreen({ rig, length_m, send }: Props) {
       <fieldset className={styles.sure}>
         <legend>How sure are you?</legend>
         {kSure.map((value) => (
-          <Button key={value} className={styles.wide} pressed={sure === value} onClick={() => setSure(value)}>
+          <Button key={value} pressed={sure === value} onClick={() => setSure(value)}>
             {formatShare(share(value))} <small>{kSureWords[value]}</small>
           </Button>
         ))}

@@ -83,7 +83,7 @@ export function RunningScreen({
         <dl className={styles.readings}>
           <div>
             <dt>Time</dt>
-            <dd>{formatTime(second(Math.floor(live.t_s)))}</dd>
+            <dd>{formatTime(second(Math.floor(live.t_s)), 0)}</dd>
           </div>
           {live.depth_m === null ? null : (
             <div>
