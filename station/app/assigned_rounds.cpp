@@ -108,13 +108,12 @@ core::Result<TrialReport> probe(const Round& round, const AssignedWork& work) {
     return round.trainee.look(seen);
   };
   const double length_m = task.law.travel_m;
-  return session::run_probing_trial(folder, task, setup,
-                                    warned(presence.watched(watch), folder, setup.device),
-                                    [&](const std::optional<trial::Answer>& simulated) {
-                                      round.presence.is(Presence::State::questions);
-                                      return round.trainee.answer({trial::Rig::probing, length_m},
-                                                                  simulated);
-                                    });
+  return session::run_probing_trial(
+      folder, task, setup, warned(presence.watched(watch), folder, setup.device),
+      [&](const std::optional<trial::Answer>& simulated) {
+        round.presence.is(Presence::State::questions);
+        return round.trainee.answer({trial::Rig::probing, length_m}, simulated);
+      });
 }
 
 core::Result<TrialReport> run_assigned_trial(const Round& round, const AssignedWork& work) {
@@ -162,8 +161,8 @@ core::Result<AssignedTally> do_assigned(const Options& options, Presence& presen
   bool sent = true;
   for (int i = 0; trainee.may_begin(); ++i) {
     const Round round{options, presence, folder, trainee, i};
-    auto work = TRY(
-        tried(trainee, Stage::server, [&] { return next_work(round, sent, server, ticket); }));
+    auto work =
+        TRY(tried(trainee, Stage::server, [&] { return next_work(round, sent, server, ticket); }));
     tally.left = work.left;
     if (!work.trial || i == options.trials || !trainee.starts(work)) return tally;
     const AssignedTrial& trial = *work.trial;

@@ -215,13 +215,16 @@ void add_assigned(CLI::App& app, Options& options) {
 void add_kiosk(CLI::App& app, Options& options) {
   add_assigned_trials(app, options);
   app.add_option("--web", options.web, "folder of the built pages (web/dist)")->required();
-  app.add_option("--port", options.port, "on 127.0.0.1, where the browser finds it; 0: any free one")
+  app.add_option("--port", options.port,
+                 "on 127.0.0.1, where the browser finds it; 0: any free one")
       ->capture_default_str();
   auto* none = app.add_flag("--no-browser", options.no_browser,
                             "print the page's address; whoever has it drives the kiosk");
   app.add_option("--browser", options.browser, "program that shows the page")
       ->capture_default_str()
       ->excludes(none);
+  app.add_option("--technician-pin-file", options.technician_pin_file,
+                 "its first line is the PIN of the technician's menu; without, there is none");
   app.footer(
       "Examples:\n"
       "  tractus-station kiosk --data st --server URL --token-file st.token --web web/dist "

@@ -19,11 +19,7 @@ namespace {
 
 /// From a file, or typed unseen at the terminal.
 core::Result<std::string> pin_of(const Options& options) {
-  if (!options.pin_file.empty()) {
-    auto bytes = TRY(core::read_file(options.pin_file, 4096));
-    std::string pin(core::text_of(bytes));
-    return pin.substr(0, pin.find_first_of("\r\n"));
-  }
+  if (!options.pin_file.empty()) return pin_in(options.pin_file);
   if (!::isatty(STDIN_FILENO))
     return core::Error{core::Errc::bad_input, "--pin-file: is needed without a terminal"};
   const char* typed = ::getpass("PIN: ");
@@ -38,8 +34,7 @@ const char* task_text(const wire::AssignedTrial& trial) {
 
 class AtTerminal final : public Trainee {
  public:
-  AtTerminal(const Options& options, Presence& presence)
-      : options_(options), presence_(presence) {}
+  AtTerminal(const Options& options, Presence& presence) : options_(options), presence_(presence) {}
 
   bool may_begin() override { return !asked_to_stop() && presence_.may_resume(); }
 

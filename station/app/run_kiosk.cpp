@@ -7,6 +7,7 @@
 
 #include "core/try.hpp"
 #include "station/app/assigned_rounds.hpp"
+#include "station/app/checks.hpp"
 #include "station/app/commands.hpp"
 #include "station/app/exchange.hpp"
 #include "station/app/kiosk_browser.hpp"
@@ -17,21 +18,20 @@
 namespace tractus {
 namespace app {
 namespace {
+using core::Instant_ns;
 using kiosk::Desk;
 using kiosk::FaultKind;
 using kiosk::Machine;
 using kiosk::Screen;
-using core::Instant_ns;
 
 constexpr Instant_ns kSendAgain_ns = 30'000'000'000;
 
 std::uint64_t trials_waiting(const session::StationFolder& folder) {
   const auto entries = folder.outbox().entries();
   if (!entries) return 0;
-  return static_cast<std::uint64_t>(
-      std::ranges::count_if(*entries, [](const uplink::OutboxEntry& entry) {
-        return entry.state == uplink::OutboxState::queued;
-      }));
+  return static_cast<std::uint64_t>(std::ranges::count_if(
+      *entries,
+      [](const uplink::OutboxEntry& entry) { return entry.state == uplink::OutboxState::queued; }));
 }
 
 /// By the words of safety::text_of and of the rig's entry, which the trial's file states as well.
@@ -74,8 +74,8 @@ class AtKiosk final : public Trainee {
     return !asked_to_stop() && !desk_.look([](const Machine& m) { return m.ends_trial(); });
   }
 
-  core::Result<std::optional<trial::Answer>> answer(
-      const Question& question, const std::optional<trial::Answer>&) override {
+  core::Result<std::optional<trial::Answer>> answer(const Question& question,
+                                                    const std::optional<trial::Answer>&) override {
     desk_.tell([&](Machine& machine, Instant_ns now) {
       machine.asked({question.rig, question.length_m}, now);
     });
@@ -143,12 +143,47 @@ void tell_sign_in_error(Desk& desk, const core::Error& error) {
   });
 }
 
+/// What became of the newest trials, for a technician.
+std::vector<std::string> log_of(const session::StationFolder& folder) {
+  constexpr std::size_t kLines = 8;
+  std::vector<std::string> out;
+  const auto entries = folder.outbox().entries();
+  if (!entries) return {entries.error().what};
+  for (auto entry = entries->rbegin(); entry != entries->rend() && out.size() < kLines; ++entry)
+    out.push_back(fmt::format("{}: {}{}", entry->trial_id, core::name(entry->state),
+                              entry->reason.empty() ? "" : ", " + entry->reason));
+  return out;
+}
+
+/// As `tractus-station self-test --stand-by`: whoever asked for it stands there.
+void test_for_technician(const Kiosk& kiosk) {
+  Options options = kiosk.options;
+  options.stand_by = true;
+  kiosk.presence.is(Presence::State::preparing);
+  Checked checked{options, kiosk.folder, *kiosk.presence.outside()};
+  const auto report = test_station(checked);
+  core::Json findings = core::Json::array();
+  for (const check::Finding& finding : checked.findings) findings.push_back(finding.to_json());
+  const std::string why = report ? "" : report.error().what;
+  kiosk.presence.is(Presence::State::idle);
+  kiosk.desk.tell(
+      [&](Machine& machine, Instant_ns now) { machine.tested(std::move(findings), why, now); });
+}
+
 /// Trials that wait are sent again while nobody is signed in. That the server is away is no fault.
 void send_waiting(const Kiosk& kiosk) {
   if (auto sent = hand_over(kiosk.options, kiosk.folder); !sent)
     std::fprintf(stderr, "warning: nothing was handed over: %s\n", sent.error().what.c_str());
   const std::uint64_t waiting = trials_waiting(kiosk.folder);
-  kiosk.desk.tell([&](Machine& machine, Instant_ns) { machine.waiting(waiting); });
+  const auto lines = log_of(kiosk.folder);
+  kiosk.desk.tell([&](Machine& machine, Instant_ns) {
+    machine.waiting(waiting);
+    machine.log(lines);
+  });
+}
+
+bool someone_acts(const Machine& machine) {
+  return machine.screen() == Screen::checking || machine.screen() == Screen::testing;
 }
 
 /// Nothing when the program is to end.
@@ -156,11 +191,14 @@ std::optional<kiosk::Credentials> next_credentials(const Kiosk& kiosk) {
   while (!asked_to_stop()) {
     const bool waits = trials_waiting(kiosk.folder) > 0;
     const Instant_ns again = kiosk.clock.now() + kSendAgain_ns;
-    const bool given =
-        kiosk.desk.wait([](const Machine& machine) { return machine.screen() == Screen::checking; },
-                        [&] { return asked_to_stop() || (waits && kiosk.clock.now() > again); });
+    const bool given = kiosk.desk.wait(
+        someone_acts, [&] { return asked_to_stop() || (waits && kiosk.clock.now() > again); });
     if (!given) {
       if (!asked_to_stop()) send_waiting(kiosk);
+      continue;
+    }
+    if (kiosk.desk.look([](const Machine& m) { return m.screen() == Screen::testing; })) {
+      test_for_technician(kiosk);
       continue;
     }
     std::optional<kiosk::Credentials> out;
@@ -176,8 +214,8 @@ void visit(const Kiosk& kiosk, const kiosk::Credentials& credentials) {
   if (!ticket) return tell_sign_in_error(kiosk.desk, ticket.error());
   kiosk.desk.tell([&](Machine& machine, Instant_ns) { machine.signed_in(ticket->name); });
   AtKiosk trainee(kiosk.desk, kiosk.presence, kiosk.folder);
-  const auto tally = do_assigned(kiosk.options, kiosk.presence, kiosk.folder, kiosk.server, *ticket,
-                                 trainee);
+  const auto tally =
+      do_assigned(kiosk.options, kiosk.presence, kiosk.folder, kiosk.server, *ticket, trainee);
   if (!tally) std::fprintf(stderr, "warning: %s\n", tally.error().what.c_str());
   const bool left = kiosk.desk.look([](const Machine& machine) { return machine.leaves(); });
   if (tally && !left && !asked_to_stop()) {
@@ -185,6 +223,8 @@ void visit(const Kiosk& kiosk, const kiosk::Credentials& credentials) {
     kiosk.desk.wait([](const Machine& machine) { return machine.leaves(); }, asked_to_stop);
   }
   uplink::sign_out(kiosk.server, *ticket);
+  const auto lines = log_of(kiosk.folder);
+  kiosk.desk.tell([&](Machine& machine, Instant_ns) { machine.log(lines); });
   kiosk.presence.is(Presence::State::idle);
   kiosk.desk.tell([](Machine& machine, Instant_ns now) { machine.signed_out(now); });
 }
@@ -194,7 +234,7 @@ void tell_recovered(Desk& desk, const session::Recovered& recovered) {
   std::uint64_t samples = 0;
   for (const auto& one : recovered.trials) samples += one.samples;
   desk.tell([&](Machine& machine, Instant_ns now) {
-    machine.interrupted(fmt::format("{} trials, {} samples", recovered.trials.size(), samples),
+    machine.interrupted(fmt::format("trials: {}, samples: {}", recovered.trials.size(), samples),
                         now);
   });
 }
@@ -219,6 +259,13 @@ core::Result<int> run_kiosk(const Options& given) {
   auto server = TRY(connect(options));
   const core::MonotonicClock clock;
   Desk desk(clock, Machine(devices::is_simulated(options.setup.device)));
+  if (!options.technician_pin_file.empty()) {
+    const std::string pin = TRY(pin_in(options.technician_pin_file));
+    if (pin.size() < 4 || pin.size() > 12 || pin.find_first_not_of("0123456789") != pin.npos)
+      return core::bad_input(fmt::format("--technician-pin-file {}: 4 to 12 digits are expected",
+                                         options.technician_pin_file.string()));
+    desk.tell([&](Machine& machine, Instant_ns) { machine.technician_pin(pin); });
+  }
   tell_recovered(desk, recovered);
   auto pages = TRY(kiosk::PageServer::open(desk, options.web, options.port));
   std::unique_ptr<KioskBrowser> browser;

@@ -14,6 +14,8 @@ namespace {
 using Kind = Command::Kind;
 using volume::Wall;
 constexpr std::size_t kMostBadge = 64, kMostPin = 12;
+constexpr int kMostWrongPins = 5;  // as the server's for badges
+constexpr core::Instant_ns kLocked_ns = 180'000'000'000;
 
 core::Json json_of(const wire::AssignedWork& work) {
   const wire::AssignedTrial& trial = *work.trial;
@@ -68,9 +70,14 @@ core::Result<Command> Command::from_json(const core::Json& json) {
 }
 
 core::Json Machine::to_json() const {
-  core::Json out{{"screen", name(screen_)}, {"simulated", simulated_}, {"name", name_},
-                 {"notice", notice_},       {"waiting_trials", waiting_}};
+  core::Json out{{"screen", name(screen_)},
+                 {"simulated", simulated_},
+                 {"name", name_},
+                 {"notice", notice_},
+                 {"waiting_trials", waiting_}};
   if (work_ && work_->trial) out["work"] = json_of(*work_);
+  if (!technician_pin_.empty()) out["technician"] = true;
+  if (screen_ == Screen::technician) out["findings"] = findings_, out["log"] = log_;
   if (screen_ == Screen::running) out["live"] = json_of(live_);
   if (screen_ == Screen::answer)
     out["question"] = {{"rig", name(asked_.rig)}, {"length_m", asked_.length_m}};
@@ -138,6 +145,42 @@ core::Result<void> Machine::take_fault(const Command& command, core::Instant_ns 
   return {};
 }
 
+bool Machine::technician_locked(core::Instant_ns now) const noexcept {
+  return wrong_pins_ >= kMostWrongPins && now - wrong_at_ < kLocked_ns;
+}
+
+void Machine::judge_technician(const std::string& pin, core::Instant_ns now) {
+  if (pin == technician_pin_) {
+    wrong_pins_ = 0;
+    findings_ = core::Json::array();
+    return show(Screen::technician, now);
+  }
+  ++wrong_pins_;
+  wrong_at_ = now;
+  if (technician_locked(now)) return show_fault(FaultKind::locked, "", now);
+  show(Screen::technician_pin, now);
+  notice_ = "The PIN is wrong.";
+}
+
+core::Result<void> Machine::take_technician(const Command& command, core::Instant_ns now) {
+  if (command.kind == Kind::technician && screen_ == Screen::badge && !technician_pin_.empty()) {
+    if (technician_locked(now))
+      show_fault(FaultKind::locked, "", now);
+    else
+      show(Screen::technician_pin, now);
+  } else if (command.kind == Kind::pin && screen_ == Screen::technician_pin) {
+    if (!is_pin(command.text)) return core::bad_input("pin: 1 to 12 digits are expected");
+    judge_technician(command.text, now);
+  } else if (command.kind == Kind::self_test && screen_ == Screen::technician) {
+    show(Screen::testing, now);
+  } else if (command.kind == Kind::back && screen_ != Screen::testing && screen_ != Screen::badge) {
+    show(Screen::badge, now);
+  } else {
+    return not_now(command);
+  }
+  return {};
+}
+
 core::Result<void> Machine::take(const Command& command, core::Instant_ns now) {
   const auto at = [&](Screen screen, Kind kind) {
     return screen_ == screen && command.kind == kind && !leaves_;
@@ -145,6 +188,8 @@ core::Result<void> Machine::take(const Command& command, core::Instant_ns now) {
   if (command.kind == Kind::badge) return take_badge(command, now);
   if (leaves_) return not_now(command);
   if (screen_ == Screen::fault) return take_fault(command, now);
+  if (command.kind == Kind::technician || screen_ >= Screen::technician_pin)
+    return take_technician(command, now);
   if (at(Screen::pin, Kind::back)) {
     forget();
     show(Screen::badge, now);
@@ -178,10 +223,12 @@ core::Result<void> Machine::take(const Command& command, core::Instant_ns now) {
 double Machine::patience_s() const noexcept {
   switch (screen_) {
     case Screen::pin:
+    case Screen::technician_pin:
       return times_.pin_s;
     case Screen::work:
     case Screen::result:
     case Screen::complete:
+    case Screen::technician:
       return times_.idle_s;
     case Screen::answer:
       return times_.answer_s;
@@ -199,7 +246,8 @@ bool Machine::tick(core::Instant_ns now) {
   const double patience = patience_s();
   if (leaves_ || patience == 0.0 || static_cast<double>(now - touched_) * 1e-9 < patience)
     return false;
-  if (screen_ == Screen::pin || (screen_ == Screen::fault && nobody_signed_in())) {
+  if (screen_ == Screen::pin || screen_ >= Screen::technician_pin ||
+      (screen_ == Screen::fault && nobody_signed_in())) {
     forget();
     show(Screen::badge, now);
   } else if (screen_ == Screen::answer) {
@@ -265,6 +313,12 @@ void Machine::failed(FaultKind kind, const std::string& what, core::Instant_ns n
 }
 
 void Machine::complete(core::Instant_ns now) { show(Screen::complete, now); }
+
+void Machine::tested(core::Json findings, const std::string& why, core::Instant_ns now) {
+  show(Screen::technician, now);
+  findings_ = std::move(findings);
+  notice_ = why;
+}
 
 void Machine::signed_out(core::Instant_ns now) {
   const bool timed_out = timed_out_;

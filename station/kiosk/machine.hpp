@@ -4,6 +4,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "core/clock.hpp"
 #include "core/json.hpp"
@@ -25,6 +26,9 @@ enum class Screen {
   paused,
   complete,  ///< nothing is left
   fault,
+  technician_pin,
+  technician,  ///< the technician's menu
+  testing,     ///< a self-test runs
 };
 constexpr auto words(Screen) {
   using enum Screen;
@@ -39,7 +43,10 @@ constexpr auto words(Screen) {
                                             {result, "result"},
                                             {paused, "paused"},
                                             {complete, "complete"},
-                                            {fault, "fault"}});
+                                            {fault, "fault"},
+                                            {technician_pin, "technician_pin"},
+                                            {technician, "technician"},
+                                            {testing, "testing"}});
 }
 
 enum class FaultKind {
@@ -67,9 +74,23 @@ using core::name;
 
 /// What a person does at the screen.
 struct Command {
-  enum class Kind { badge, pin, back, start, end_trial, answer, next, pause, resume, retry, sign_out };
+  enum class Kind {
+    badge,
+    pin,
+    back,
+    start,
+    end_trial,
+    answer,
+    next,
+    pause,
+    resume,
+    retry,
+    sign_out,
+    technician,
+    self_test
+  };
   Kind kind = Kind::back;
-  std::string text = {};                      ///< badge number or PIN
+  std::string text = {};                     ///< badge number or PIN
   std::optional<trial::Answer> answer = {};  ///< of `answer`
 
   /// A message of the page. Errors: bad_input, which never quotes a PIN.
@@ -87,16 +108,18 @@ constexpr auto words(Command::Kind) {
                                           {Kind::pause, "pause"},
                                           {Kind::resume, "resume"},
                                           {Kind::retry, "retry"},
-                                          {Kind::sign_out, "sign_out"}});
+                                          {Kind::sign_out, "sign_out"},
+                                          {Kind::technician, "technician"},
+                                          {Kind::self_test, "self_test"}});
 }
 
 /// Without a touch for so long, s.
 struct TimeOuts {
   double pin_s = 45.0;
-  double idle_s = 120.0;     ///< signed in, between trials
-  double answer_s = 600.0;   ///< then the trial is kept without an answer
+  double idle_s = 120.0;    ///< signed in, between trials
+  double answer_s = 600.0;  ///< then the trial is kept without an answer
   double paused_s = 900.0;
-  double notice_s = 30.0;    ///< a fault that nobody has to act on
+  double notice_s = 30.0;  ///< a fault that nobody has to act on
 };
 
 /// Badge and PIN on their way to the server.
@@ -129,6 +152,10 @@ class Machine {
  public:
   explicit Machine(bool simulated, TimeOuts times = {}) : times_(times), simulated_(simulated) {}
 
+  /// Opens the technician's menu; empty: there is none. After five wrong ones, one try every three
+  /// minutes, as the server does with a badge.
+  void technician_pin(std::string pin) { technician_pin_ = std::move(pin); }
+
   Screen screen() const noexcept { return screen_; }
   std::optional<FaultKind> fault() const noexcept { return fault_; }
   /// What the page shows: the screen with what belongs to it. Never a PIN.
@@ -153,6 +180,10 @@ class Machine {
   void failed(FaultKind kind, const std::string& what, core::Instant_ns now);
   void complete(core::Instant_ns now);
   void waiting(std::uint64_t trials) { waiting_ = trials; }
+  /// For the technician: what became of this station's trials, the newest first.
+  void log(std::vector<std::string> lines) { log_ = std::move(lines); }
+  /// A self-test has ended. @param findings  of the report; empty with `why` there is none
+  void tested(core::Json findings, const std::string& why, core::Instant_ns now);
   /// The session has ended: the next person.
   void signed_out(core::Instant_ns now);
 
@@ -172,6 +203,9 @@ class Machine {
   core::Result<void> take_badge(const Command& command, core::Instant_ns now);
   core::Result<void> take_fault(const Command& command, core::Instant_ns now);
   core::Result<void> leave(core::Instant_ns now);
+  core::Result<void> take_technician(const Command& command, core::Instant_ns now);
+  void judge_technician(const std::string& pin, core::Instant_ns now);
+  bool technician_locked(core::Instant_ns now) const noexcept;
   bool nobody_signed_in() const noexcept { return name_.empty(); }
   double patience_s() const noexcept;
 
@@ -190,6 +224,11 @@ class Machine {
   std::optional<trial::Answer> answer_;
   Outcome outcome_;
   std::uint64_t waiting_ = 0;
+  std::vector<std::string> log_;
+  std::string technician_pin_;
+  int wrong_pins_ = 0;
+  core::Instant_ns wrong_at_ = 0;
+  core::Json findings_ = core::Json::array();
   bool leaves_ = false, ends_trial_ = false, timed_out_ = false;
 };
 

@@ -1,19 +1,27 @@
 /// The kiosk's states by hand: expected screens are those of the table in README.md.
+#include "station/kiosk/machine.hpp"
+
 #include <gtest/gtest.h>
 
 #include "station/kiosk/desk.hpp"
-#include "station/kiosk/machine.hpp"
 
 namespace tractus::kiosk {
 namespace {
 using Kind = Command::Kind;
 constexpr core::Instant_ns kSecond = 1'000'000'000;
 
-Command command(Kind kind, std::string text = {}) { return {.kind = kind, .text = std::move(text)}; }
+Command command(Kind kind, std::string text = {}) {
+  return {.kind = kind, .text = std::move(text)};
+}
 
 wire::AssignedWork work_of(trial::Rig rig) {
-  wire::AssignedTrial trial{.slot = std::string(64, 'a'), .rig = rig, .name = "Case 1",
-                            .assignment = "Week 1", .number = 1, .planned = 3, .case_id = "",
+  wire::AssignedTrial trial{.slot = std::string(64, 'a'),
+                            .rig = rig,
+                            .name = "Case 1",
+                            .assignment = "Week 1",
+                            .number = 1,
+                            .planned = 3,
+                            .case_id = "",
                             .sealed = ""};
   return {.participant = "P01", .left = 3, .trial = trial};
 }
@@ -200,6 +208,40 @@ TEST_F(KioskMachine, AnUnansweredTrialIsKeptWithoutAnAnswer) {
   EXPECT_TRUE(machine_.leaves());
 }
 
+TEST_F(KioskMachine, TheTechniciansMenuIsBehindItsPin) {
+  expect_refused(command(Kind::technician));  // no PIN was set: there is no menu
+  machine_.technician_pin("8642");
+  expect_taken(command(Kind::technician));
+  expect_refused(command(Kind::self_test));
+  expect_taken(command(Kind::pin, "8642"));
+  EXPECT_EQ(screen(), Screen::technician);
+  EXPECT_EQ(machine_.to_json().dump().find("8642"), std::string::npos);
+  expect_taken(command(Kind::self_test));
+  EXPECT_EQ(screen(), Screen::testing);
+  expect_refused(command(Kind::back));
+  expect_refused(command(Kind::badge, "1"));
+  machine_.tested({{{"name", "disk"}, {"passed", true}}}, "", now_);
+  EXPECT_EQ(machine_.to_json()["findings"][0]["name"], "disk");
+  expect_taken(command(Kind::back));
+  EXPECT_EQ(screen(), Screen::badge);
+}
+
+TEST_F(KioskMachine, FiveWrongTechniciansPinsLockTheMenuForThreeMinutes) {
+  machine_.technician_pin("8642");
+  expect_taken(command(Kind::technician));
+  for (int i = 0; i < 5; ++i) expect_taken(command(Kind::pin, "1111"));
+  EXPECT_EQ(machine_.fault(), FaultKind::locked);
+  expect_taken(command(Kind::back));
+  wait_s(179.0);
+  expect_taken(command(Kind::technician));
+  EXPECT_EQ(machine_.fault(), FaultKind::locked);
+  expect_taken(command(Kind::back));
+  wait_s(2.0);
+  expect_taken(command(Kind::technician));
+  expect_taken(command(Kind::pin, "8642"));
+  EXPECT_EQ(screen(), Screen::technician);
+}
+
 TEST_F(KioskMachine, ARunningTrialHasNoTimeOut) {
   to_work();
   expect_taken(command(Kind::start));
@@ -236,8 +278,8 @@ TEST(KioskDesk, WakesTheSessionAndTellsThePage) {
   desk.listen([&](const std::string& text) { shown = text; });
   EXPECT_NE(shown.find(R"("screen":"badge")"), std::string::npos);
   std::thread page([&] { ASSERT_TRUE(desk.take(command(Kind::badge, "1"))); });
-  const bool came = desk.wait([](const Machine& m) { return m.screen() == Screen::pin; },
-                              [] { return false; });
+  const bool came =
+      desk.wait([](const Machine& m) { return m.screen() == Screen::pin; }, [] { return false; });
   page.join();
   EXPECT_TRUE(came);
   EXPECT_NE(shown.find(R"("screen":"pin")"), std::string::npos);

@@ -129,7 +129,8 @@ core::Result<std::unique_ptr<PageServer>> PageServer::open(Desk& desk,
   const auto files = std::make_shared<const http::StaticFiles>(web);
   const auto seat = std::make_shared<Seat>();
   http::Service service;
-  service.admit = [gate](const http::RequestHead& head) -> std::variant<http::Admitted, http::Response> {
+  service.admit =
+      [gate](const http::RequestHead& head) -> std::variant<http::Admitted, http::Response> {
     if (auto refusal = gate->refusal(head)) return std::move(*refusal);
     return http::Admitted{};
   };

@@ -19,7 +19,8 @@ class PageServer {
   /// @param web   folder of the built pages
   /// @param port  0: any free port
   /// Errors: not_found (no kiosk.html in `web`), unavailable (port).
-  static core::Result<std::unique_ptr<PageServer>> open(Desk& desk, const std::filesystem::path& web,
+  static core::Result<std::unique_ptr<PageServer>> open(Desk& desk,
+                                                        const std::filesystem::path& web,
                                                         std::uint16_t port);
   ~PageServer();
   PageServer(const PageServer&) = delete;

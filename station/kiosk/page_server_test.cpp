@@ -1,4 +1,6 @@
 /// Who the kiosk's page server lets in. Requests are written by hand, byte for byte.
+#include "station/kiosk/page_server.hpp"
+
 #include <arpa/inet.h>
 #include <gtest/gtest.h>
 #include <sys/socket.h>
@@ -8,7 +10,6 @@
 #include <fstream>
 
 #include "core/bytes.hpp"
-#include "station/kiosk/page_server.hpp"
 
 namespace tractus::kiosk {
 namespace {

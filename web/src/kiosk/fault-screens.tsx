@@ -1,6 +1,7 @@
 /** What went wrong, in words for whoever stands there, and what they may do. */
 import { Button } from '@/ui';
 import type { Connection, FaultKind, Send, State } from './station';
+import { useBadge } from './typed';
 import styles from './kiosk.module.css';
 
 type Fault = NonNullable<State['fault']>;
@@ -52,6 +53,16 @@ const kWords: Record<FaultKind, Words> = {
   },
 };
 
+/** A badge may be scanned here as well. */
+function SignIn({ send }: { readonly send: Send }) {
+  useBadge(send);
+  return (
+    <Button look="solid" className={styles.main_button} onClick={() => send({ command: 'back' })}>
+      Sign in
+    </Button>
+  );
+}
+
 export function FaultScreen({
   fault,
   waiting,
@@ -80,9 +91,7 @@ export function FaultScreen({
             </Button>
           </>
         ) : (
-          <Button look="solid" className={styles.main_button} onClick={() => send({ command: 'back' })}>
-            Sign in
-          </Button>
+          <SignIn send={send} />
         )}
       </div>
       {fault.what === '' ? null : <p className={styles.small}>{fault.what}</p>}

@@ -3,6 +3,7 @@ import { Badge } from '@/ui';
 import { AnswerScreen } from './answer-screen';
 import { FaultScreen, LostScreen } from './fault-screens';
 import { BadgeScreen, PinScreen } from './sign-in-screens';
+import { TechnicianScreen } from './technician-screen';
 import { useStation, type Send, type State } from './station';
 import { CompleteScreen, PausedScreen, ResultScreen, RunningScreen, WaitScreen, WorkScreen } from './work-screens';
 import styles from './kiosk.module.css';
@@ -10,9 +11,15 @@ import styles from './kiosk.module.css';
 function Screen({ state, send }: { readonly state: State; readonly send: Send }) {
   switch (state.screen) {
     case 'badge':
-      return <BadgeScreen send={send} />;
+      return <BadgeScreen technician={state.technician} send={send} />;
     case 'pin':
-      return <PinScreen notice={state.notice} send={send} />;
+      return <PinScreen title="Type your PIN" notice={state.notice} send={send} />;
+    case 'technician_pin':
+      return <PinScreen title="Technician’s PIN" notice={state.notice} send={send} />;
+    case 'technician':
+      return <TechnicianScreen {...state} send={send} />;
+    case 'testing':
+      return <WaitScreen text="Self-test: keep your hands off the device" />;
     case 'checking':
       return <WaitScreen text="Checking badge and PIN" />;
     case 'work':

@@ -1,37 +1,12 @@
 /** Badge and PIN, by a scanner that types, by keys or by touch. */
-import { useEffect, useEffectEvent, useState } from 'react';
 import { Button } from '@/ui';
 import type { Send } from './station';
+import { useBadge, useTyped } from './typed';
 import styles from './kiosk.module.css';
 
 const kKeys = ['1', '2', '3', '4', '5', '6', '7', '8', '9'] as const;
-const kLongestBadge = 64,
-  kLongestPin = 12,
+const kLongestPin = 12,
   kShortestPin = 4;
-
-/** Keys of a keyboard or a scanner, wherever the focus is. */
-function useTyped(
-  allowed: RegExp,
-  longest: number,
-  onEnter: (text: string) => void,
-): [string, (change: (text: string) => string) => void] {
-  const [text, setText] = useState('');
-  const onKey = useEffectEvent((event: KeyboardEvent) => {
-    if (event.ctrlKey || event.altKey || event.metaKey) return;
-    if (event.key === 'Enter') {
-      event.preventDefault();
-      if (text !== '') onEnter(text);
-      setText('');
-    } else if (event.key === 'Backspace') setText(text.slice(0, -1));
-    else if (event.key.length === 1 && allowed.test(event.key) && text.length < longest) setText(text + event.key);
-  });
-  useEffect(() => {
-    const listener = (event: KeyboardEvent) => onKey(event);
-    window.addEventListener('keydown', listener);
-    return () => window.removeEventListener('keydown', listener);
-  }, []);
-  return [text, setText];
-}
 
 interface PadProps {
   readonly onDigit: (digit: string) => void;
@@ -62,10 +37,9 @@ function Pad({ onDigit, onDelete, onEnter, ready, enter }: PadProps) {
   );
 }
 
-export function BadgeScreen({ send }: { readonly send: Send }) {
-  const give = (badge: string) => send({ command: 'badge', badge });
-  const [badge, setBadge] = useTyped(/^[\x21-\x7e]$/, kLongestBadge, give);
-  const add = (digit: string) => setBadge((text) => (text.length < kLongestBadge ? text + digit : text));
+export function BadgeScreen({ technician, send }: { readonly technician: boolean; readonly send: Send }) {
+  const [badge, setBadge, give] = useBadge(send);
+  const add = (digit: string) => setBadge((text) => text + digit);
   return (
     <section className={styles.columns}>
       <div className={styles.words}>
@@ -74,36 +48,47 @@ export function BadgeScreen({ send }: { readonly send: Send }) {
         <output className={styles.typed} aria-label="Badge number">
           {badge === '' ? ' ' : badge}
         </output>
+        {technician ? (
+          <Button look="quiet" className={styles.small} onClick={() => send({ command: 'technician' })}>
+            Technician
+          </Button>
+        ) : null}
       </div>
       <Pad
         enter="Next"
         ready={badge !== ''}
         onDigit={add}
         onDelete={() => setBadge((text) => text.slice(0, -1))}
-        onEnter={() => give(badge)}
+        onEnter={give}
       />
     </section>
   );
 }
 
-export function PinScreen({ notice, send }: { readonly notice: string; readonly send: Send }) {
+interface PinProps {
+  readonly title: string;
+  readonly notice: string;
+  readonly send: Send;
+}
+
+export function PinScreen({ title, notice, send }: PinProps) {
   const give = (pin: string) => send({ command: 'pin', pin });
   const [pin, setPin] = useTyped(/^\d$/, kLongestPin, give);
   const add = (digit: string) => setPin((text) => (text.length < kLongestPin ? text + digit : text));
   return (
     <section className={styles.columns}>
       <div className={styles.words}>
-        <h1>Type your PIN</h1>
+        <h1>{title}</h1>
         {notice === '' ? <p>Nobody else should see it.</p> : <p role="alert">{notice} Try again.</p>}
         <output className={styles.typed} aria-label="Digits typed">
           {pin === '' ? ' ' : '●'.repeat(pin.length)}
         </output>
         <Button className={styles.wide} onClick={() => send({ command: 'back' })}>
-          Not me: back
+          Back
         </Button>
       </div>
       <Pad
-        enter="Sign in"
+        enter="OK"
         ready={pin.length >= kShortestPin}
         onDigit={add}
         onDelete={() => setPin((text) => text.slice(0, -1))}

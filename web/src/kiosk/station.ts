@@ -37,6 +37,9 @@ export const kFaults = [
 ] as const;
 export type FaultKind = (typeof kFaults)[number];
 
+const Finding = v.object({ name: v.string(), passed: v.boolean(), words: v.string() });
+export type Finding = v.InferOutput<typeof Finding>;
+
 const State = v.object({
   screen: v.picklist([
     'badge',
@@ -51,6 +54,9 @@ const State = v.object({
     'paused',
     'complete',
     'fault',
+    'technician_pin',
+    'technician',
+    'testing',
   ]),
   simulated: v.boolean(),
   name: v.string(),
@@ -60,6 +66,9 @@ const State = v.object({
   live: v.optional(v.object({ t_s: v.number(), depth_m: v.nullable(v.number()), progress: v.nullable(v.number()) })),
   question: v.optional(v.object({ rig: Rig, length_m: v.number() })),
   outcome: v.optional(v.object({ answer: v.nullable(Answer), drilled: v.boolean(), sent: v.boolean() })),
+  technician: v.optional(v.boolean(), false),
+  findings: v.optional(v.array(Finding), []),
+  log: v.optional(v.array(v.string()), []),
   fault: v.optional(v.object({ kind: v.picklist(kFaults), what: v.string(), signed_in: v.boolean() })),
 });
 export type State = v.InferOutput<typeof State>;
@@ -68,7 +77,19 @@ export type Command =
   | { readonly command: 'badge'; readonly badge: string }
   | { readonly command: 'pin'; readonly pin: string }
   | { readonly command: 'answer'; readonly answer: Answer }
-  | { readonly command: 'back' | 'start' | 'end_trial' | 'next' | 'pause' | 'resume' | 'retry' | 'sign_out' };
+  | {
+      readonly command:
+        | 'back'
+        | 'start'
+        | 'end_trial'
+        | 'next'
+        | 'pause'
+        | 'resume'
+        | 'retry'
+        | 'sign_out'
+        | 'technician'
+        | 'self_test';
+    };
 export type Send = (command: Command) => void;
 
 export const readState = (text: string): State => v.parse(State, JSON.parse(text));
