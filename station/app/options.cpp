@@ -223,6 +223,10 @@ void add_kiosk(CLI::App& app, Options& options) {
   app.add_option("--browser", options.browser, "program that shows the page")
       ->capture_default_str()
       ->excludes(none);
+  app.add_option("--idle", options.idle_s,
+                 "s without a touch between trials; then the trainee is signed out")
+      ->check(between(5.0, 3600.0))
+      ->capture_default_str();
   app.add_option("--technician-pin-file", options.technician_pin_file,
                  "its first line is the PIN of the technician's menu; without, there is none");
   app.footer(

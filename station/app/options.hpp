@@ -54,6 +54,7 @@ struct Options {
   std::uint16_t port = 8470;  ///< on 127.0.0.1; 0: any free one
   bool no_browser = false;    ///< the address is printed instead
   std::string browser = "chromium";
+  double idle_s = 120.0;
   std::filesystem::path technician_pin_file;  ///< empty: no technician's menu
   // self-test, calibrate
   std::filesystem::path page;  ///< HTML to print; empty: none

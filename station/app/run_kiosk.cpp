@@ -70,7 +70,10 @@ class AtKiosk final : public Trainee {
   bool look(const session::TrialSnapshot& seen) override {
     kiosk::Live live{.t_s = std::max(seen.t_s, 0.0)};
     if (!seen.blind) live.depth_m = seen.depth_m, live.progress = seen.progress;
-    desk_.tell([&](Machine& machine, Instant_ns) { machine.running(live); });
+    desk_.tell([&](Machine& machine, Instant_ns) {
+      if (seen.header.simulated) machine.simulated();
+      machine.running(live);
+    });
     return !asked_to_stop() && !desk_.look([](const Machine& m) { return m.ends_trial(); });
   }
 
@@ -258,7 +261,8 @@ core::Result<int> run_kiosk(const Options& given) {
   say_recovered(recovered);
   auto server = TRY(connect(options));
   const core::MonotonicClock clock;
-  Desk desk(clock, Machine(devices::is_simulated(options.setup.device)));
+  const kiosk::TimeOuts times{.idle_s = options.idle_s};
+  Desk desk(clock, Machine(devices::is_simulated(options.setup.device), times));
   if (!options.technician_pin_file.empty()) {
     const std::string pin = TRY(pin_in(options.technician_pin_file));
     if (pin.size() < 4 || pin.size() > 12 || pin.find_first_not_of("0123456789") != pin.npos)

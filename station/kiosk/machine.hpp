@@ -179,6 +179,8 @@ class Machine {
   void done(const Outcome& outcome, core::Instant_ns now);
   void failed(FaultKind kind, const std::string& what, core::Instant_ns now);
   void complete(core::Instant_ns now);
+  /// The device has said that it is simulated, which its name does not always tell.
+  void simulated() { simulated_ = true; }
   void waiting(std::uint64_t trials) { waiting_ = trials; }
   /// For the technician: what became of this station's trials, the newest first.
   void log(std::vector<std::string> lines) { log_ = std::move(lines); }

@@ -67,13 +67,24 @@ export interface Kiosk {
   readonly end: (signal?: NodeJS.Signals) => Promise<void>;
 }
 
+const kioskWords = (line: Line, { folder, token }: Programme['station']) => [
+  ...['kiosk', '--data', folder, '--server', `http://127.0.0.1:${String(line.port)}`],
+  ...['--token-file', token, '--web', kDist, '--port', '0'],
+];
+
 export async function startKiosk(bin: string, line: Line, { station }: Programme, words: string[]): Promise<Kiosk> {
   const { child, line: said } = await begun(join(bin, 'tractus-station'), [
-    ...['kiosk', '--data', station.folder, '--server', `http://127.0.0.1:${String(line.port)}`],
-    ...['--token-file', station.token, '--web', kDist, '--port', '0', '--no-browser', '--json', ...words],
+    ...kioskWords(line, station),
+    ...['--no-browser', '--json', ...words],
   ]);
   const { address } = JSON.parse(said) as { address: string };
   return { address, end: (signal = 'SIGTERM') => ended(child, signal) };
+}
+
+/** With a browser of its own; the answer ends it. */
+export function shown(bin: string, line: Line, { station }: Programme, words: string[]): () => Promise<void> {
+  const child = spawn(join(bin, 'tractus-station'), [...kioskWords(line, station), ...words], { stdio: 'inherit' });
+  return () => ended(child, 'SIGTERM');
 }
 
 /** Registers of the simulated world, station/devices/rig-registers.md, unit 240. */

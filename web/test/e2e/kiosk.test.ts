@@ -2,13 +2,13 @@
  * The kiosk, driven on its screen against a real server by a person with both simulated rigs: sign-in, trials, answers, results; and what
  * goes wrong: a wrong PIN, a cut network, a killed station, an emergency stop, a dead rig. What was promised arrives at the server.
  */
-import { writeFileSync } from 'node:fs';
+import { existsSync, readFileSync, statSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import type { Browser, Page } from 'playwright-core';
 import { afterAll, afterEach, beforeAll, describe, expect, it } from 'vitest';
 import { accessibilityFaults } from './axe';
 import { kShots, launch } from './browser';
-import { kResetButton, kStopButton, Line, startKiosk, startRig, type Kiosk } from './kiosk-station';
+import { kResetButton, kStopButton, Line, startKiosk, startRig, shown, type Kiosk } from './kiosk-station';
 import { furnish, type Programme } from './programme';
 import { programs, serveReal, type Served } from './real-server';
 
@@ -213,6 +213,40 @@ describe.skipIf(bin === '')('the kiosk', () => {
     await touch('Sign out');
     await screen('badge');
   }, 240_000);
+
+  it('is stopped by a supervisor, and signs out whom nobody sees', async () => {
+    await open(['--device', 'sim-lambda6', '--duration', '20', '--idle', '5']);
+    await signIn(kAda);
+    await touch('Start');
+    await screen('running');
+    const reason = 'the probe has come loose';
+    await programme.admin.ask('POST', `/stations/${programme.station.id}/stop`, { reason });
+    await fault('stopped');
+    await page.getByText(reason).waitFor();
+    await look('fault-stopped');
+    await touch('Go on');
+    await screen('work');
+    await fault('timed_out');
+    await look('fault-timed-out');
+  }, 120_000);
+
+  it('opens the browser without a secret in its arguments, and anew when it ends', async () => {
+    await open(['--device', 'sim-lambda6']);
+    await kiosk.end();
+    const starts = join(served.folder, 'starts'),
+      browserStandIn = join(served.folder, 'browser');
+    writeFileSync(browserStandIn, `#!/bin/sh\necho "$@" >> ${starts}\nsleep 1\n`, { mode: 0o755 });
+    const ended = shown(bin, line, programme, ['--device', 'sim-lambda6', '--browser', browserStandIn]);
+    const lines = () => (existsSync(starts) ? readFileSync(starts, 'utf8').trim().split('\n') : []);
+    await expect.poll(() => lines().length, { timeout: 20_000 }).toBeGreaterThan(1);
+    await ended();
+    const start = join(programme.station.folder, 'kiosk', 'start.html');
+    const secret = /#([0-9a-f]{64})/.exec(readFileSync(start, 'utf8'))?.[1] ?? '';
+    expect(secret).not.toBe('');
+    expect(statSync(start).mode & 0o777).toBe(0o600);
+    expect(lines().join()).toContain(`file://${start}`);
+    expect(lines().join()).not.toContain(secret);
+  }, 60_000);
 
   it('tests the station for a technician who knows the PIN', async () => {
     const file = join(served.folder, 'technician-pin');
