@@ -158,12 +158,19 @@ std::vector<std::string> log_of(const session::StationFolder& folder) {
   return out;
 }
 
-/// As `tractus-station self-test --stand-by`: whoever asked for it stands there.
+/// As `tractus-station self-test`. A real device is tested at a terminal alone: it tells a person
+/// what will move, and waits.
 void test_for_technician(const Kiosk& kiosk) {
-  Options options = kiosk.options;
-  options.stand_by = true;
+  if (!devices::is_simulated(kiosk.options.setup.device))
+    return kiosk.desk.tell([](Machine& machine, Instant_ns now) {
+      machine.tested(core::Json::array(),
+                     "A real device is tested at a terminal: stop the kiosk and run "
+                     "tractus-station self-test, which says when to move the handle and when to "
+                     "let go.",
+                     now);
+    });
   kiosk.presence.is(Presence::State::preparing);
-  Checked checked{options, kiosk.folder, *kiosk.presence.outside()};
+  Checked checked{kiosk.options, kiosk.folder, *kiosk.presence.outside()};
   const auto report = test_station(checked);
   core::Json findings = core::Json::array();
   for (const check::Finding& finding : checked.findings) findings.push_back(finding.to_json());

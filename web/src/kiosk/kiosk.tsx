@@ -19,7 +19,7 @@ function Screen({ state, send }: { readonly state: State; readonly send: Send })
     case 'technician':
       return <TechnicianScreen {...state} send={send} />;
     case 'testing':
-      return <WaitScreen text="Self-test: keep your hands off the device" />;
+      return <WaitScreen text="Self-test" />;
     case 'checking':
       return <WaitScreen text="Checking badge and PIN" />;
     case 'work':

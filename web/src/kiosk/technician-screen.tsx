@@ -12,6 +12,7 @@ interface Props {
 
 /** What a terminal is for: each asks a person to do something with the device, or changes what a hand may feel. */
 const kCommands = [
+  'tractus-station self-test',
   'tractus-station calibrate',
   'tractus-station align',
   'tractus-station limits',
@@ -28,7 +29,7 @@ export function TechnicianScreen({ findings, log, notice, send }: Props) {
         </Button>
         <Button onClick={() => send({ command: 'back' })}>Back</Button>
       </div>
-      <p>The device moves by itself in a self-test: nobody may touch it.</p>
+      <p>The self-test here is of a simulated device. A real one is tested at a terminal.</p>
       {notice === '' ? null : <p role="alert">{notice}</p>}
       {findings.length === 0 ? null : (
         <ul className={styles.findings} aria-label="Findings">
