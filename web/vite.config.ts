@@ -62,6 +62,8 @@ export default defineConfig({
     // The server answers with a policy that allows no data: or inline code, so nothing is inlined.
     assetsInlineLimit: 0,
     chunkSizeWarningLimit: 1200,
+    // The server's pages, and the page that a station shows on its own screen.
+    rolldownOptions: { input: ['index.html', 'kiosk.html'] },
   },
   test: {
     environment: 'jsdom',

@@ -175,6 +175,24 @@ int not_calibrated(const Checked& checked) {
 }
 }  // namespace
 
+core::Result<check::Report> test_station(Checked& checked) {
+  const Options& options = checked.options;
+  check::SelfTest test{.at_utc_us = core::utc_us()};
+  const auto device =
+      devices::is_rig(options.setup.device) ? check_whole_rig(checked) : self_test_hand(checked);
+  TRY(recorded_outcome(device, checked));
+  TRY(check_calibration(checked));
+  TRY(check_machine(checked));
+  if (asked_to_stop()) return core::Error{core::Errc::cancelled, "stopped"};
+  test.device = checked.device.empty() ? options.setup.device : checked.device;
+  test.simulated = checked.simulated;
+  test.findings = checked.findings;
+  check::Report report = report_for(checked.folder);
+  report.self_test = std::move(test);
+  TRY(keep(checked, report));
+  return report;
+}
+
 core::Result<int> self_test(const Options& options) {
   TRY(check_page(options));
   auto folder = TRY(session::StationFolder::open(options.data));
@@ -182,21 +200,10 @@ core::Result<int> self_test(const Options& options) {
   Presence presence(options, folder);
   presence.is(Presence::State::preparing);
   Checked checked{options, folder, *presence.outside()};
-  check::SelfTest test{.at_utc_us = core::utc_us()};
-  const auto device =
-      devices::is_rig(options.setup.device) ? check_whole_rig(checked) : self_test_hand(checked);
-  if (auto fine = recorded_outcome(device, checked); !fine) return unfinished(fine.error());
-  TRY(check_calibration(checked));
-  TRY(check_machine(checked));
-  if (asked_to_stop()) return unfinished({core::Errc::cancelled, ""});
-  test.device = checked.device.empty() ? options.setup.device : checked.device;
-  test.simulated = checked.simulated;
-  test.findings = checked.findings;
-  check::Report report = report_for(folder);
-  report.self_test = std::move(test);
-  TRY(keep(checked, report));
+  const auto report = test_station(checked);
+  if (!report) return unfinished(report.error());
   if (options.json)
-    fmt::print("{}\n", report.to_json().dump(2));
+    fmt::print("{}\n", report->to_json().dump(2));
   else
     print(checked);
   return all_passed(checked) ? 0 : 1;

@@ -44,6 +44,10 @@ core::Result<void> calibrate_hand(Checked& checked);
 /// above.
 core::Result<void> check_whole_rig(Checked& checked);
 
+/// A self-test: the device's checks, the calibration's date and the machine's; kept for the server.
+/// What was found is in `checked`. Errors: cancelled, bad_input (nobody stands by), io.
+core::Result<check::Report> test_station(Checked& checked);
+
 /// Draws a picture as in a trial: a small simulated block of bone.
 check::Finding check_display(Show show);
 

@@ -14,6 +14,7 @@ core::Result<int> run_study(const Options& options);
 core::Result<int> sync_cases(const Options& options);
 core::Result<int> upload_trials(const Options& options);
 core::Result<int> run_assigned(const Options& options);
+core::Result<int> run_kiosk(const Options& options);
 core::Result<int> enrol_station(const Options& options);
 core::Result<int> show_limits(const Options& options);
 core::Result<int> align_room(const Options& options);

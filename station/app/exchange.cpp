@@ -48,6 +48,12 @@ core::Result<std::string> token_of(const Options& options) {
   return token;
 }
 
+core::Result<std::string> pin_in(const std::filesystem::path& file) {
+  auto bytes = TRY(core::read_file(file, 4096));
+  std::string pin(core::text_of(bytes));
+  return pin.substr(0, pin.find_first_of("\r\n"));
+}
+
 core::Result<std::unique_ptr<uplink::Server>> connect(const Options& options) {
   auto token = TRY(token_of(options));
   auto server = TRY(uplink::HttpServer::make(options.server_url, token, options.authority));

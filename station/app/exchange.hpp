@@ -14,6 +14,8 @@ namespace tractus::app {
 
 /// The token file's one line. Errors: io, not_found.
 core::Result<std::string> token_of(const Options& options);
+/// The first line of a file with a PIN. Errors: io, not_found.
+core::Result<std::string> pin_in(const std::filesystem::path& file);
 core::Result<std::unique_ptr<uplink::Server>> connect(const Options& options);
 core::Result<core::Json> fetch_cases(const Options& options, const session::StationFolder& folder);
 /// Fetches the versions of models that were sent to this station. Errors: the server's, io.

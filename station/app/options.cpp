@@ -23,6 +23,7 @@ constexpr const char* kExamples = R"(Examples:
   tractus-station study  --study spine-1 --participant P01 --device rig --data st --server URL --token-file st.token
   tractus-station enrol  --server https://sim.example.org:8480 --authority authority.pem --code C --token-file st.token
   tractus-station assigned --badge 4711 --data st --server URL --token-file st.token
+  tractus-station kiosk  --data st --server URL --token-file st.token --web web/dist   assigned, on a full screen
   tractus-station --device lambda6 --sdk /opt/sdk --case 3f9ac2d1 --data st
   tractus-station --device lambda6 --case 3f9ac2d1 --data st --view headset
   tractus-station align  --device lambda6 --data st --fixture table.json   place of the device in the room
@@ -179,30 +180,62 @@ void set_study(const CLI::App& app, Options& options) {
   if (app.count("--trials") == 0) options.trials = std::numeric_limits<int>::max();
 }
 
-void add_assigned(CLI::App& app, Options& options) {
+/// What `assigned` and `kiosk` have in common: who does the trials comes, what they are is the
+/// server's.
+void add_assigned_trials(CLI::App& app, Options& options) {
   add_data(app, options, true);
   add_server(app, options, true);
-  app.add_option("--badge", options.badge, "the trainee's badge number")->required();
-  app.add_option("--pin-file", options.pin_file, "its first line is the PIN; else asked for");
   add_any_device(app, options, "for scenarios");
   add_sdk(app, options);
   add_rig(app, options);
-  add_started(app, options);
   app.add_option("--seed", options.setup.seed, "of the simulated hand")
       ->check(between(0.0, 9e15))
       ->capture_default_str();
   app.add_option("--duration", options.setup.duration_s, "s, of a palpation trial")
       ->check(between(1.0, 3600.0))
       ->capture_default_str();
+  app.add_option("--view", options.show, "window, headset, headset-or-window, offscreen or none")
+      ->transform(word_of(shows()))
+      ->default_str("none");
+}
+
+void add_assigned(CLI::App& app, Options& options) {
+  add_assigned_trials(app, options);
+  app.add_option("--badge", options.badge, "the trainee's badge number")->required();
+  app.add_option("--pin-file", options.pin_file, "its first line is the PIN; else asked for");
+  add_started(app, options);
   app.add_option("--speed", options.setup.speed, "real or fast")->transform(word_of(kSpeeds));
   app.add_option("--answer", options.answer, "what to answer instead of the simulated hand")
       ->check(CLI::IsMember({"none", "medial", "lateral", "superior", "inferior", "anterior"}));
   app.add_option("--trials", options.trials, "at most so many now")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
-  app.add_option("--view", options.show, "window, headset, headset-or-window, offscreen or none")
-      ->transform(word_of(shows()))
-      ->default_str("none");
+}
+
+void add_kiosk(CLI::App& app, Options& options) {
+  add_assigned_trials(app, options);
+  app.add_option("--web", options.web, "folder of the built pages (web/dist)")->required();
+  app.add_option("--port", options.port,
+                 "on 127.0.0.1, where the browser finds it; 0: any free one")
+      ->capture_default_str();
+  auto* none = app.add_flag("--no-browser", options.no_browser,
+                            "print the page's address; whoever has it drives the kiosk");
+  app.add_option("--browser", options.browser, "program that shows the page")
+      ->capture_default_str()
+      ->excludes(none);
+  app.add_option("--idle", options.idle_s,
+                 "s without a touch between trials; then the trainee is signed out")
+      ->check(between(5.0, 3600.0))
+      ->capture_default_str();
+  app.add_option("--technician-pin-file", options.technician_pin_file,
+                 "its first line is the PIN of the technician's menu; without, there is none");
+  app.footer(
+      "Examples:\n"
+      "  tractus-station kiosk --data st --server URL --token-file st.token --web web/dist "
+      "--device rig --address 192.168.1.40:1502\n"
+      "  tractus-station kiosk --data st --server URL --token-file st.token --web web/dist "
+      "--device sim-rig --no-browser   SIMULATED rig\n"
+      "deploy/systemd/tractus-kiosk.service starts it with the machine.");
 }
 
 void add_enrol(CLI::App& app, Options& options) {
@@ -341,6 +374,9 @@ Parsed parse(int argc, char** argv) {
   add_assigned(*add_command(app, options, run_assigned, "assigned",
                             "sign in with badge and PIN and run the assigned trials in order"),
                options);
+  add_kiosk(*add_command(app, options, run_kiosk, "kiosk",
+                         "show a full-screen page where trainees sign in and do assigned trials"),
+            options);
   add_enrol(*add_command(app, options, enrol_station, "enrol",
                          "register this station at the server with a one-time code"),
             options);

@@ -49,6 +49,13 @@ struct Options {
   // assigned
   std::string badge;
   std::filesystem::path pin_file;  ///< empty: asked at the terminal
+  // kiosk
+  std::filesystem::path web;  ///< folder of the built pages
+  std::uint16_t port = 8470;  ///< on 127.0.0.1; 0: any free one
+  bool no_browser = false;    ///< the address is printed instead
+  std::string browser = "chromium";
+  double idle_s = 120.0;
+  std::filesystem::path technician_pin_file;  ///< empty: no technician's menu
   // self-test, calibrate
   std::filesystem::path page;  ///< HTML to print; empty: none
   double for_s = 10.0;         ///< that a hand moves the handle about

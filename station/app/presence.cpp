@@ -202,9 +202,13 @@ bool Presence::may_resume() {
   fmt::print(stderr, "Look at the device, then press Enter to go on: ");
   std::string line;
   if (!std::getline(std::cin, line)) return false;
-  p.outside.resume();
-  is(State::idle);
+  resume();
   return true;
+}
+
+void Presence::resume() {
+  parts_->outside.resume();
+  is(State::idle);
 }
 
 }  // namespace app

@@ -30,6 +30,8 @@ class Presence {
   /// Nobody stopped it, or a person at the terminal says that it goes on. False: it was stopped,
   /// and nobody is there.
   bool may_resume();
+  /// A person at the station says that it goes on after a stop.
+  void resume();
 
  private:
   struct Parts;

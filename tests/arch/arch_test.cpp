@@ -90,6 +90,9 @@ const std::map<std::string, Names> kAllowed = {
     {"station/headset",
      {"shared/core", "shared/math", "shared/volume", "shared/laws", "shared/drilling",
       "station/view", "station/devices"}},
+    // The kiosk's states, and its page by the server's own transport; no device, no loop.
+    {"station/kiosk",
+     {"shared/core", "shared/math", "shared/trial", "shared/wire", "shared/volume", "server/http"}},
     {"station/session",
      {"shared/core", "shared/math", "shared/volume", "shared/laws", "shared/effects",
       "shared/models", "shared/scenarios", "shared/cases", "shared/trial", "shared/metrics",

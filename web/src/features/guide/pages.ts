@@ -197,6 +197,10 @@ export const kPages: readonly GuidePage[] = [
         text: 'At the station, tractus-station self-test checks device, loop, display, disk and clock, and prints a page (--page). tractus-station calibrate determines the zeros of the device under your name. Both results are reported here.',
       },
       {
+        title: 'Start into the kiosk',
+        text: 'tractus-station kiosk shows a full-screen page on which trainees sign in with badge and PIN and do their trials; deploy/systemd/tractus-kiosk.service starts it with the machine. It says in words what is wrong: network, device, emergency stop.',
+      },
+      {
         title: 'Check the status',
         text: 'Open a station to see its self-tests, when its calibration is due, free disk space and late ticks. Lower its force limit if you suspect a fault of the device; only a person at the station can raise it again.',
         picture: {

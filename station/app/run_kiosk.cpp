@@ -1,0 +1,295 @@
+/// The kiosk: who comes signs in on the screen and does the trials assigned, as with `assigned`.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <limits>
+
+#include "core/try.hpp"
+#include "station/app/assigned_rounds.hpp"
+#include "station/app/checks.hpp"
+#include "station/app/commands.hpp"
+#include "station/app/exchange.hpp"
+#include "station/app/kiosk_browser.hpp"
+#include "station/app/trial_epilogue.hpp"
+#include "station/devices/catalogue.hpp"
+#include "station/kiosk/page_server.hpp"
+
+namespace tractus {
+namespace app {
+namespace {
+using core::Instant_ns;
+using kiosk::Desk;
+using kiosk::FaultKind;
+using kiosk::Machine;
+using kiosk::Screen;
+
+constexpr Instant_ns kSendAgain_ns = 30'000'000'000;
+
+std::uint64_t trials_waiting(const session::StationFolder& folder) {
+  const auto entries = folder.outbox().entries();
+  if (!entries) return 0;
+  return static_cast<std::uint64_t>(std::ranges::count_if(
+      *entries,
+      [](const uplink::OutboxEntry& entry) { return entry.state == uplink::OutboxState::queued; }));
+}
+
+/// By the words of safety::text_of and of the rig's entry, which the trial's file states as well.
+FaultKind kind_of_fault(const std::string& what) {
+  return what.find("emergency stop") != std::string::npos ? FaultKind::emergency_stop
+                                                          : FaultKind::device;
+}
+
+FaultKind kind_of_error(Stage stage, const core::Error& error) {
+  const bool absent = error.code == core::Errc::unavailable;
+  if (stage == Stage::server) return absent ? FaultKind::network : FaultKind::work;
+  const bool of_device = absent || error.code == core::Errc::io;
+  return of_device ? kind_of_fault(error.what) : FaultKind::work;
+}
+
+bool goes_or_leaves(const Machine& machine) {
+  return machine.screen() == Screen::preparing || machine.leaves();
+}
+
+class AtKiosk final : public Trainee {
+ public:
+  AtKiosk(Desk& desk, Presence& presence, const session::StationFolder& folder)
+      : desk_(desk), presence_(presence), folder_(folder) {}
+
+  bool may_begin() override {
+    if (!presence_.outside()->stopped()) return stays();
+    return overcome(FaultKind::stopped, session::stop_message(*presence_.outside()));
+  }
+
+  bool starts(const wire::AssignedWork& work) override {
+    presence_.is(Presence::State::idle);
+    desk_.tell([&](Machine& machine, Instant_ns now) { machine.offered(work, now); });
+    return waits_to_go_on();
+  }
+
+  bool look(const session::TrialSnapshot& seen) override {
+    kiosk::Live live{.t_s = std::max(seen.t_s, 0.0)};
+    if (!seen.blind) live.depth_m = seen.depth_m, live.progress = seen.progress;
+    desk_.tell([&](Machine& machine, Instant_ns) {
+      if (seen.header.simulated) machine.simulated();
+      machine.running(live);
+    });
+    return !asked_to_stop() && !desk_.look([](const Machine& m) { return m.ends_trial(); });
+  }
+
+  core::Result<std::optional<trial::Answer>> answer(const Question& question,
+                                                    const std::optional<trial::Answer>&) override {
+    desk_.tell([&](Machine& machine, Instant_ns now) {
+      machine.asked({question.rig, question.length_m}, now);
+    });
+    const bool said = desk_.wait(
+        [](const Machine& machine) { return machine.screen() == Screen::saving; }, asked_to_stop);
+    if (!said) return std::optional<trial::Answer>();
+    return desk_.look([](const Machine& machine) { return machine.answer(); });
+  }
+
+  bool tries_again(Stage stage, const core::Error& error) override {
+    if (presence_.outside()->stopped())
+      return overcome(FaultKind::stopped, session::stop_message(*presence_.outside()));
+    return overcome(kind_of_error(stage, error), error.what);
+  }
+
+  bool goes_on(const wire::AssignedWork& work, const session::TrialReport& report,
+               bool sent) override {
+    const std::uint64_t waiting = trials_waiting(folder_);
+    desk_.tell([&](Machine& machine, Instant_ns) { machine.waiting(waiting); });
+    if (presence_.outside()->stopped())
+      return overcome(FaultKind::stopped, session::stop_message(*presence_.outside()));
+    if (!report.complete) return overcome(kind_of_fault(report.fault), report.fault);
+    const kiosk::Outcome outcome{report.answer, work.trial->drills, sent};
+    desk_.tell([&](Machine& machine, Instant_ns now) { machine.done(outcome, now); });
+    return waits_to_go_on();
+  }
+
+ private:
+  bool stays() const {
+    return !asked_to_stop() && !desk_.look([](const Machine& machine) { return machine.leaves(); });
+  }
+  bool waits_to_go_on() { return desk_.wait(goes_or_leaves, asked_to_stop) && stays(); }
+  /// A person looks at what is wrong, and says that it goes on.
+  bool overcome(FaultKind kind, const std::string& what) {
+    desk_.tell([&](Machine& machine, Instant_ns now) { machine.failed(kind, what, now); });
+    if (!waits_to_go_on()) return false;
+    presence_.resume();
+    return true;
+  }
+
+  Desk& desk_;
+  Presence& presence_;
+  const session::StationFolder& folder_;
+};
+
+/// What every visit to this station shares.
+struct Kiosk {
+  const Options& options;
+  const session::StationFolder& folder;
+  uplink::Server& server;
+  Presence& presence;
+  Desk& desk;
+  const core::Clock& clock;
+};
+
+void tell_sign_in_error(Desk& desk, const core::Error& error) {
+  const auto says = [&](const char* words) { return error.what.find(words) != std::string::npos; };
+  desk.tell([&](Machine& machine, Instant_ns now) {
+    if (error.code == core::Errc::unauthorised && says("badge or PIN is wrong"))
+      machine.sign_in_refused("Badge or PIN is wrong.", now);
+    else if (says("the server answers 429"))
+      machine.sign_in_failed(FaultKind::locked, error.what, now);
+    else
+      machine.sign_in_failed(kind_of_error(Stage::server, error), error.what, now);
+  });
+}
+
+/// What became of the newest trials, for a technician.
+std::vector<std::string> log_of(const session::StationFolder& folder) {
+  constexpr std::size_t kLines = 8;
+  std::vector<std::string> out;
+  const auto entries = folder.outbox().entries();
+  if (!entries) return {entries.error().what};
+  for (auto entry = entries->rbegin(); entry != entries->rend() && out.size() < kLines; ++entry)
+    out.push_back(fmt::format("{}: {}{}", entry->trial_id, core::name(entry->state),
+                              entry->reason.empty() ? "" : ", " + entry->reason));
+  return out;
+}
+
+/// As `tractus-station self-test`. A real device is tested at a terminal alone: it tells a person
+/// what will move, and waits.
+void test_for_technician(const Kiosk& kiosk) {
+  if (!devices::is_simulated(kiosk.options.setup.device))
+    return kiosk.desk.tell([](Machine& machine, Instant_ns now) {
+      machine.tested(core::Json::array(),
+                     "A real device is tested at a terminal: stop the kiosk and run "
+                     "tractus-station self-test, which says when to move the handle and when to "
+                     "let go.",
+                     now);
+    });
+  kiosk.presence.is(Presence::State::preparing);
+  Checked checked{kiosk.options, kiosk.folder, *kiosk.presence.outside()};
+  const auto report = test_station(checked);
+  core::Json findings = core::Json::array();
+  for (const check::Finding& finding : checked.findings) findings.push_back(finding.to_json());
+  const std::string why = report ? "" : report.error().what;
+  kiosk.presence.is(Presence::State::idle);
+  kiosk.desk.tell(
+      [&](Machine& machine, Instant_ns now) { machine.tested(std::move(findings), why, now); });
+}
+
+/// Trials that wait are sent again while nobody is signed in. That the server is away is no fault.
+void send_waiting(const Kiosk& kiosk) {
+  if (auto sent = hand_over(kiosk.options, kiosk.folder); !sent)
+    std::fprintf(stderr, "warning: nothing was handed over: %s\n", sent.error().what.c_str());
+  const std::uint64_t waiting = trials_waiting(kiosk.folder);
+  const auto lines = log_of(kiosk.folder);
+  kiosk.desk.tell([&](Machine& machine, Instant_ns) {
+    machine.waiting(waiting);
+    machine.log(lines);
+  });
+}
+
+bool someone_acts(const Machine& machine) {
+  return machine.screen() == Screen::checking || machine.screen() == Screen::testing;
+}
+
+/// Nothing when the program is to end.
+std::optional<kiosk::Credentials> next_credentials(const Kiosk& kiosk) {
+  while (!asked_to_stop()) {
+    const bool waits = trials_waiting(kiosk.folder) > 0;
+    const Instant_ns again = kiosk.clock.now() + kSendAgain_ns;
+    const bool given = kiosk.desk.wait(
+        someone_acts, [&] { return asked_to_stop() || (waits && kiosk.clock.now() > again); });
+    if (!given) {
+      if (!asked_to_stop()) send_waiting(kiosk);
+      continue;
+    }
+    if (kiosk.desk.look([](const Machine& m) { return m.screen() == Screen::testing; })) {
+      test_for_technician(kiosk);
+      continue;
+    }
+    std::optional<kiosk::Credentials> out;
+    kiosk.desk.tell([&](Machine& machine, Instant_ns) { out = machine.take_credentials(); });
+    if (out) return out;
+  }
+  return std::nullopt;
+}
+
+/// One person, from PIN to sign-out.
+void visit(const Kiosk& kiosk, const kiosk::Credentials& credentials) {
+  auto ticket = uplink::sign_in(kiosk.server, credentials.badge, credentials.pin);
+  if (!ticket) return tell_sign_in_error(kiosk.desk, ticket.error());
+  kiosk.desk.tell([&](Machine& machine, Instant_ns) { machine.signed_in(ticket->name); });
+  AtKiosk trainee(kiosk.desk, kiosk.presence, kiosk.folder);
+  const auto tally =
+      do_assigned(kiosk.options, kiosk.presence, kiosk.folder, kiosk.server, *ticket, trainee);
+  if (!tally) std::fprintf(stderr, "warning: %s\n", tally.error().what.c_str());
+  const bool left = kiosk.desk.look([](const Machine& machine) { return machine.leaves(); });
+  if (tally && !left && !asked_to_stop()) {
+    kiosk.desk.tell([](Machine& machine, Instant_ns now) { machine.complete(now); });
+    kiosk.desk.wait([](const Machine& machine) { return machine.leaves(); }, asked_to_stop);
+  }
+  uplink::sign_out(kiosk.server, *ticket);
+  const auto lines = log_of(kiosk.folder);
+  kiosk.desk.tell([&](Machine& machine, Instant_ns) { machine.log(lines); });
+  kiosk.presence.is(Presence::State::idle);
+  kiosk.desk.tell([](Machine& machine, Instant_ns now) { machine.signed_out(now); });
+}
+
+void tell_recovered(Desk& desk, const session::Recovered& recovered) {
+  if (recovered.trials.empty()) return;
+  std::uint64_t samples = 0;
+  for (const auto& one : recovered.trials) samples += one.samples;
+  desk.tell([&](Machine& machine, Instant_ns now) {
+    machine.interrupted(fmt::format("trials: {}, samples: {}", recovered.trials.size(), samples),
+                        now);
+  });
+}
+
+void print_address(const Options& options, const std::string& address) {
+  if (options.json)
+    fmt::print("{}\n", core::Json{{"address", address}}.dump());
+  else
+    fmt::print("{}\n", address);
+  std::fflush(stdout);
+}
+
+}  // namespace
+
+core::Result<int> run_kiosk(const Options& given) {
+  Options options = given;
+  options.trials = std::numeric_limits<int>::max();
+  auto folder = TRY(session::StationFolder::open(options.data));
+  auto lock = TRY(folder.lock());
+  auto recovered = TRY(folder.recover());
+  say_recovered(recovered);
+  auto server = TRY(connect(options));
+  const core::MonotonicClock clock;
+  const kiosk::TimeOuts times{.idle_s = options.idle_s};
+  Desk desk(clock, Machine(devices::is_simulated(options.setup.device), times));
+  if (!options.technician_pin_file.empty()) {
+    const std::string pin = TRY(pin_in(options.technician_pin_file));
+    if (pin.size() < 4 || pin.size() > 12 || pin.find_first_not_of("0123456789") != pin.npos)
+      return core::bad_input(fmt::format("--technician-pin-file {}: 4 to 12 digits are expected",
+                                         options.technician_pin_file.string()));
+    desk.tell([&](Machine& machine, Instant_ns) { machine.technician_pin(pin); });
+  }
+  tell_recovered(desk, recovered);
+  auto pages = TRY(kiosk::PageServer::open(desk, options.web, options.port));
+  std::unique_ptr<KioskBrowser> browser;
+  if (options.no_browser)
+    print_address(options, pages->address());
+  else
+    browser = TRY(KioskBrowser::start(options.browser, options.data / "kiosk", pages->address()));
+  Presence presence(options, folder);
+  const Kiosk kiosk{options, folder, *server, presence, desk, clock};
+  send_waiting(kiosk);
+  while (const auto credentials = next_credentials(kiosk)) visit(kiosk, *credentials);
+  return 0;
+}
+
+}  // namespace app
+}  // namespace tractus

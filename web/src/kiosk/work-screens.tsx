@@ -1,0 +1,172 @@
+/** From the next trial to its result. */
+import { Button, Progress } from '@/ui';
+import { formatLength, formatShare, formatTime, metre, second, share } from '@/units';
+import type { Send, State, Work } from './station';
+import styles from './kiosk.module.css';
+
+type Live = NonNullable<State['live']>;
+type Outcome = NonNullable<State['outcome']>;
+
+/** How the tool is held, in the order in which it is done. */
+function holding({ rig, tool }: Pick<Work, 'rig' | 'tool'>): readonly string[] {
+  if (tool === 'burr')
+    return [
+      'Hold the handle like a pen, the arm at rest.',
+      'Bring the tip to the entry, then press and hold the button: the burr cuts.',
+      'Let the button go when the channel is deep enough.',
+    ];
+  if (rig === 'probing')
+    return [
+      'Hold the handle in your palm, in line with your forearm.',
+      'Push forward evenly and turn to and fro.',
+      'Stop pushing when you feel that a wall gives way.',
+    ];
+  return [
+    'Hold the handle like a pen, the arm at rest.',
+    'Lead the tip into the channel; feel the bottom first.',
+    'Stroke each wall from the bottom to the entry.',
+  ];
+}
+
+export function WaitScreen({ text }: { readonly text: string }) {
+  return (
+    <section className={styles.centre} role="status">
+      <h1>{text}…</h1>
+    </section>
+  );
+}
+
+export function WorkScreen({ work, send }: { readonly work: Work; readonly send: Send }) {
+  return (
+    <section className={styles.columns}>
+      <div className={styles.words}>
+        <p className={styles.small}>{work.assignment}</p>
+        <h1>{work.name}</h1>
+        <p>
+          Trial {work.number} of {work.planned}.{' '}
+          {work.left === 1 ? 'It is your last one today.' : `You have ${String(work.left)} trials to do.`}
+        </p>
+        <ol className={styles.steps}>
+          {holding(work).map((step) => (
+            <li key={step}>{step}</li>
+          ))}
+        </ol>
+      </div>
+      <div className={styles.actions}>
+        <Button look="solid" className={styles.main_button} onClick={() => send({ command: 'start' })}>
+          Start
+        </Button>
+        <Button className={styles.wide} onClick={() => send({ command: 'pause' })}>
+          Pause
+        </Button>
+        <Button className={styles.wide} onClick={() => send({ command: 'sign_out' })}>
+          Sign out
+        </Button>
+      </div>
+    </section>
+  );
+}
+
+export function RunningScreen({
+  live,
+  work,
+  send,
+}: {
+  readonly live: Live;
+  readonly work: Work | undefined;
+  readonly send: Send;
+}) {
+  return (
+    <section className={styles.columns}>
+      <div className={styles.words}>
+        <h1>{work?.tool === 'burr' ? 'Drill' : 'Feel the walls'}</h1>
+        <dl className={styles.readings}>
+          <div>
+            <dt>Time</dt>
+            <dd>{formatTime(second(Math.floor(live.t_s)), 0)}</dd>
+          </div>
+          {live.depth_m === null ? null : (
+            <div>
+              <dt>Depth</dt>
+              <dd>{formatLength(metre(live.depth_m), 0)}</dd>
+            </div>
+          )}
+        </dl>
+        {live.progress === null ? (
+          <p>This trial shows no depth.</p>
+        ) : (
+          <>
+            <Progress done={live.progress} of={1} label="Share of the trial's time" />
+            <p>{formatShare(share(live.progress))} of the trial&apos;s time</p>
+          </>
+        )}
+      </div>
+      <div className={styles.actions}>
+        <Button className={styles.main_button} onClick={() => send({ command: 'end_trial' })}>
+          I am done
+        </Button>
+      </div>
+    </section>
+  );
+}
+
+function answerText({ answer, drilled }: Outcome): string {
+  if (drilled) return 'The channel that you drilled is kept. You feel it in a later trial.';
+  if (answer === null) return 'The trial is kept without an answer.';
+  const said = answer.breach ? `breach of the ${answer.wall ?? ''} wall` : 'no breach';
+  return `Your answer: ${said}${answer.confidence === undefined ? '' : `, ${formatShare(share(answer.confidence))} sure`}.`;
+}
+
+export function ResultScreen({ outcome, send }: { readonly outcome: Outcome; readonly send: Send }) {
+  return (
+    <section className={styles.columns}>
+      <div className={styles.words}>
+        <h1>Trial done</h1>
+        <p>{answerText(outcome)}</p>
+        <p>
+          {outcome.sent
+            ? 'The server has it. You see the result on your own page once it is released.'
+            : 'The server does not answer. The trial is safe at this station and is sent later by itself.'}
+        </p>
+      </div>
+      <div className={styles.actions}>
+        <Button look="solid" className={styles.main_button} onClick={() => send({ command: 'next' })}>
+          Next trial
+        </Button>
+        <Button className={styles.wide} onClick={() => send({ command: 'pause' })}>
+          Pause
+        </Button>
+        <Button className={styles.wide} onClick={() => send({ command: 'sign_out' })}>
+          Sign out
+        </Button>
+      </div>
+    </section>
+  );
+}
+
+export function PausedScreen({ send }: { readonly send: Send }) {
+  return (
+    <section className={styles.centre}>
+      <h1>Paused</h1>
+      <p>After 15 minutes you are signed out. Nothing is lost.</p>
+      <Button look="solid" className={styles.main_button} onClick={() => send({ command: 'resume' })}>
+        Go on
+      </Button>
+      <Button className={styles.wide} onClick={() => send({ command: 'sign_out' })}>
+        Sign out
+      </Button>
+    </section>
+  );
+}
+
+export function CompleteScreen({ send }: { readonly send: Send }) {
+  return (
+    <section className={styles.centre}>
+      <h1>Nothing is left to do</h1>
+      <p>No trial of yours waits for this station now.</p>
+      <Button look="solid" className={styles.main_button} onClick={() => send({ command: 'sign_out' })}>
+        Sign out
+      </Button>
+    </section>
+  );
+}
