@@ -17,6 +17,8 @@ struct SmoothingSettings {
   double highest_cutoff_Hz = 200.0;
   /// The highest where the motion is faster, in samples per second. Bound.
   double highest_cutoff_of_rate = 1.0;
+  /// A higher cut-off is tried where the last lowered what is left out to this share. Tuned.
+  double faster_motion_fall = 0.8;
   /// Higher differences tell noise where each is below this share of the one before. Tuned.
   double fast_motion_fall = 0.5;
   /// From one cut-off to the next. Numeric.

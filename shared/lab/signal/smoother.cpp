@@ -241,11 +241,18 @@ class Bank {
     return best;
   }
 
-  /// Is more than a tenth of the samples too smooth even at the highest cut-off so far?
+  /// Is the motion faster than the highest cut-off so far? Then each higher one predicts the samples left out much better,
+  /// which it does not where they are only noisier than was thought.
   bool still_improving() const {
-    std::size_t too_smooth_there = 0;
-    for (std::size_t k = 0; k < size_; ++k) too_smooth_there += too_smooth(long_.size() - 1, k);
-    return 10 * too_smooth_there > size_;
+    if (long_.size() < 2) return false;
+    const double now = middle_of(long_.back()), before = middle_of(long_[long_.size() - 2]);
+    return now > kSmoothing.greatest_misfit && now < kSmoothing.faster_motion_fall * before;
+  }
+
+  static double middle_of(std::vector<double> values) {
+    const auto at = values.begin() + std::ptrdiff_t(values.size() / 2);
+    std::ranges::nth_element(values, at);
+    return *at;
   }
 
   bool too_smooth(std::size_t j, std::size_t k) const {
