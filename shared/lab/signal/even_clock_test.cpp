@@ -28,9 +28,9 @@ TEST(EvenClock, IsFoundBehindStampsRoundedToATenthOfAMillisecondWithRowsLost) {
 
 TEST(EvenClock, LeavesAClockThatJittersAsItIs) {
   std::mt19937_64 random(3);
-  std::normal_distribution<> jitter(0.0, 3e-5);
+  std::normal_distribution<> deviation_s(0.0, 3e-5);
   std::vector<double> t_s;
-  for (int k = 0; k < 2000; ++k) t_s.push_back(rounded(k / 1000.0 + jitter(random), 1e-6));
+  for (int k = 0; k < 2000; ++k) t_s.push_back(rounded(k / 1000.0 + deviation_s(random), 1e-6));
   const std::vector<double> before = t_s;
   restore_even_clock(t_s);
   EXPECT_EQ(t_s, before);
