@@ -41,7 +41,9 @@ export function Table<Row>({
   if (rows?.length === 0) return <p className={styles.empty}>{empty}</p>;
   return (
     <Scroll label={caption} className={className}>
+      {/* Another table than the one that held its place: columns take their widths from the rows, and would jump. */}
       <table
+        key={rows === undefined ? 'waiting' : 'here'}
         className={styles.table}
         aria-busy={rows === undefined}
         style={minWidth === undefined ? undefined : { minWidth }}

@@ -95,7 +95,8 @@ function Attempts({ trainee, mayOpen }: { readonly trainee: Trainee; readonly ma
 export function TraineePage({ name }: { readonly name: string }) {
   useTitle(name);
   const query = useQuery(traineeQuery(name)),
-    metrics = useQuery(metricsQuery).data?.metrics ?? [];
+    metricsFound = useQuery(metricsQuery);
+  const metrics = metricsFound.data?.metrics ?? [];
   const role = useQuery({ ...sessionQuery, enabled: false }).data?.role;
   const trainee = query.data;
   const back =
@@ -123,7 +124,8 @@ export function TraineePage({ name }: { readonly name: string }) {
       </div>
     );
   }
-  if (!trainee)
+  // Both at once: the chart grows by its choice of metrics, and what is below would jump.
+  if (!trainee || metricsFound.isPending)
     return (
       <div className={styles.page}>
         {back}
