@@ -4,7 +4,7 @@ import { defineConfig } from 'vitest/config';
 export default defineConfig({
   test: {
     environment: 'node',
-    include: [process.env.MEASURE ? 'test/e2e/*.measure.ts' : 'test/e2e/*.test.ts'],
+    include: [process.env.MEASURE ? 'test/e2e/*.measure.ts' : 'test/e2e/**/*.test.ts'],
     globalSetup: ['test/e2e/build.ts'],
     fileParallelism: false,
     testTimeout: 60_000,

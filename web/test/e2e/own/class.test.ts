@@ -7,10 +7,10 @@ import { mkdirSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import type { Browser, Page } from 'playwright-core';
 import { afterAll, beforeAll, describe, expect, it } from 'vitest';
-import { accessibilityFaults } from './axe';
-import { kShots, launch } from './browser';
-import { at, Person, scored } from './programme';
-import { programs, serveReal, type Served } from './real-server';
+import { accessibilityFaults } from '../axe';
+import { kShots, launch } from '../browser';
+import { at, Person, scored } from '../programme';
+import { programs, serveReal, type Served } from '../real-server';
 
 const bin = programs('tractus-server', 'tractus-station');
 const kPin = '2580';

@@ -3,9 +3,9 @@ import { readdirSync, readFileSync, statSync } from 'node:fs';
 import { join } from 'node:path';
 import type { Browser, Page } from 'playwright-core';
 import { afterAll, beforeAll, describe, expect, it } from 'vitest';
-import { launch } from './browser';
-import { at, furnish, kScenarios, kTrainees, scored, tuned, type Programme } from './programme';
-import { programs, serveReal, type Served } from './real-server';
+import { launch } from '../browser';
+import { at, furnish, kScenarios, kTrainees, scored, tuned, type Programme } from '../programme';
+import { programs, serveReal, type Served } from '../real-server';
 
 const bin = programs('tractus-server', 'tractus-station', 'tractus');
 const [kAda] = kTrainees;

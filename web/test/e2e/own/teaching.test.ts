@@ -8,12 +8,12 @@ import { join } from 'node:path';
 import { fileURLToPath } from 'node:url';
 import type { Browser, Page } from 'playwright-core';
 import { afterAll, beforeAll, describe, expect, it } from 'vitest';
-import { accessibilityFaults } from './axe';
-import { kShots, launch } from './browser';
-import { programs, serveReal, type Served } from './real-server';
+import { accessibilityFaults } from '../axe';
+import { kShots, launch } from '../browser';
+import { programs, serveReal, type Served } from '../real-server';
 
 const bin = programs('tractus-server', 'tractus-station');
-const kCt = fileURLToPath(new URL('../../../tests/data/ct/tptbox_L3/sub-ct_label-22_ct.nii.gz', import.meta.url));
+const kCt = fileURLToPath(new URL('../../../../tests/data/ct/tptbox_L3/sub-ct_label-22_ct.nii.gz', import.meta.url));
 /** The left pedicle of that vertebra, in mm of the patient. */
 const kEntry = ['46', '200', '-61'],
   kTarget = ['38.5', '158', '-61'];

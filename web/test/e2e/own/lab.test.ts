@@ -5,12 +5,12 @@ import { readFileSync } from 'node:fs';
 import { fileURLToPath } from 'node:url';
 import type { Browser, Page } from 'playwright-core';
 import { afterAll, beforeAll, describe, expect, it } from 'vitest';
-import { kShots, launch } from './browser';
-import { programs, serveReal, type Served } from './real-server';
+import { kShots, launch } from '../browser';
+import { programs, serveReal, type Served } from '../real-server';
 
 const bin = programs('tractus-server', 'tractus-station', 'blind-probing', 'blind-palpation');
 const kSeed = '7';
-const kPicture = fileURLToPath(new URL('../../src/features/guide/pictures/researcher-missing.jpg', import.meta.url));
+const kPicture = fileURLToPath(new URL('../../../src/features/guide/pictures/researcher-missing.jpg', import.meta.url));
 
 /** "1.99 N" → 1.99 */
 const newtons = (text: string) => Number(/([\d.]+)\s*N/.exec(text.replaceAll('\u202f', ' '))?.[1] ?? Number.NaN);

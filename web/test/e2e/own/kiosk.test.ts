@@ -6,11 +6,11 @@ import { existsSync, readFileSync, statSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import type { Browser, Page } from 'playwright-core';
 import { afterAll, afterEach, beforeAll, describe, expect, it } from 'vitest';
-import { accessibilityFaults } from './axe';
-import { kShots, launch } from './browser';
-import { kResetButton, kStopButton, Line, startKiosk, startRig, shown, type Kiosk } from './kiosk-station';
-import { furnish, type Programme } from './programme';
-import { programs, serveReal, type Served } from './real-server';
+import { accessibilityFaults } from '../axe';
+import { kShots, launch } from '../browser';
+import { kResetButton, kStopButton, Line, startKiosk, startRig, shown, type Kiosk } from '../kiosk-station';
+import { furnish, type Programme } from '../programme';
+import { programs, serveReal, type Served } from '../real-server';
 
 const bin = programs('tractus', 'tractus-server', 'tractus-station', 'tractus-rig') ?? '';
 const kAda = '100',

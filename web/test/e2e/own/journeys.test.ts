@@ -3,12 +3,12 @@ import { mkdirSync, writeFileSync } from 'node:fs';
 import { fileURLToPath } from 'node:url';
 import type { Browser, Page } from 'playwright-core';
 import { afterAll, beforeAll, describe, expect, it } from 'vitest';
-import { kShots, launch } from './browser';
-import { at, furnish, kTrainees, Person, scored, tuned, type Programme } from './programme';
-import { programs, serveReal, type Served } from './real-server';
+import { kShots, launch } from '../browser';
+import { at, furnish, kTrainees, Person, scored, tuned, type Programme } from '../programme';
+import { programs, serveReal, type Served } from '../real-server';
 
 const bin = programs('tractus-server', 'tractus-station', 'tractus');
-const kPictures = fileURLToPath(new URL('../../src/features/guide/pictures/', import.meta.url));
+const kPictures = fileURLToPath(new URL('../../../src/features/guide/pictures/', import.meta.url));
 const [kAda, kBen] = kTrainees;
 
 /** What the guide shows: the upper part of a page, 1200 × 750. */
