@@ -20,6 +20,8 @@ core::Result<int> show_limits(const Options& options);
 core::Result<int> align_room(const Options& options);
 core::Result<int> trust_signer(const Options& options);
 core::Result<int> record_room(const Options& options);
+/// `record --program`: what the rig plays by itself.
+core::Result<int> play_program(const Options& options);
 core::Result<int> self_test(const Options& options);
 core::Result<int> calibrate(const Options& options);
 core::Result<int> measure_thresholds(const Options& options);

@@ -76,7 +76,11 @@ struct Options {
   std::filesystem::path signer_of_case;
   // record
   sensors::RecordSetup record;
-  std::filesystem::path room;  ///< the new folder
+  std::filesystem::path room;      ///< the new folder
+  std::filesystem::path program;   ///< played by the rig itself; empty: sensors of a room
+  std::filesystem::path with_set;  ///< whose trials come first; empty: none
+  std::filesystem::path specimen;  ///< SIMULATED, before a simulated rig's probe
+  int repetitions = 3;
 };
 
 /// How its palpation trials are looked at.

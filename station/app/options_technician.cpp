@@ -111,6 +111,26 @@ void add_record(CLI::App& app, Options& options) {
       ->check(port)
       ->capture_default_str();
   app.add_option("--igtl-port", record.igtl_port, "TCP")->check(port)->capture_default_str();
+  app.add_option("--program", options.program,
+                 "the probing rig plays this motion by itself instead (tractus-program/1, from "
+                 "tractus diagnose "
+                 "--next-recording), through what is clamped before its probe; --out becomes a "
+                 "measurement set");
+  const auto rigs = devices::all(devices::DeviceKind::rig);
+  add_device(app, options.setup.device, ", with --program", rigs)->needs("--program");
+  add_address(app, options);
+  app.add_option("--repetitions", options.repetitions, "trials of the program")
+      ->needs("--program")
+      ->check(CLI::Range(1, 50))
+      ->capture_default_str();
+  app.add_option("--with", options.with_set,
+                 "a measurement set whose trials come first in the new one")
+      ->needs("--program");
+  app.add_option("--specimen", options.specimen,
+                 "of a simulated rig: the SIMULATED material before the probe (tractus-specimen/1)")
+      ->needs("--program");
+  app.add_flag("--stand-by", options.stand_by,
+               "a person stands by and knows what will move: nobody is asked");
   app.add_flag("--json", options.json, "one JSON document on standard output");
   app.footer(
       "Example:\n  tractus-station record --netft 192.168.1.1 --igtl tracker.local --body probe "
@@ -120,6 +140,11 @@ void add_record(CLI::App& app, Options& options) {
 
 std::optional<int> check_record(const Options& options) {
   const sensors::RecordSetup& record = options.record;
+  if (!options.program.empty()) {
+    if (!record.netft_host.empty() || !record.igtl_host.empty())
+      return refuse("record: --program records the rig's own sensors: without --netft and --igtl");
+    return std::nullopt;
+  }
   if (record.netft_host.empty() && record.igtl_host.empty())
     return refuse("record: --netft or --igtl is expected, or both");
   if (!record.igtl_host.empty() && record.bodies.empty())

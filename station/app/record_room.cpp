@@ -36,6 +36,7 @@ std::string words_of(const sensors::Recorded& done, const std::filesystem::path&
 }  // namespace
 
 core::Result<int> record_room(const Options& options) {
+  if (!options.program.empty()) return play_program(options);
   core::stop_on_signals();
   // A folder's name may end in a slash.
   const auto folder = options.room.has_filename() ? options.room : options.room.parent_path();

@@ -86,11 +86,12 @@ struct MadeDevice {
 
 /// What a rig is told before it is made: a machine the first, a simulated one the others.
 struct RigOptions {
-  std::string address;                 ///< HOST:PORT, or a serial line "/dev/…[@BAUD]"
-  std::filesystem::path program = {};  ///< tractus-rig; empty: beside this program
-  std::uint64_t seed = 1;              ///< of the simulated surgeon and of the sensor
-  double skill = 0.5;                  ///< of the simulated surgeon, 0 … 1
-  bool surgeon = true;                 ///< a SIMULATED surgeon pushes; else nobody does
+  std::string address;                  ///< HOST:PORT, or a serial line "/dev/…[@BAUD]"
+  std::filesystem::path program = {};   ///< tractus-rig; empty: beside this program
+  std::uint64_t seed = 1;               ///< of the simulated surgeon and of the sensor
+  double skill = 0.5;                   ///< of the simulated surgeon, 0 … 1
+  bool surgeon = true;                  ///< a SIMULATED surgeon pushes; else nobody does
+  std::filesystem::path specimen = {};  ///< SIMULATED material in front of the probe; empty: none
 };
 
 /// A rig and, when it is simulated, the process that plays it.

@@ -88,6 +88,8 @@ core::Result<RigProcess> RigProcess::start(const RigProcessOptions& options) {
                                  "--skill",
                                  fmt::format("{}", options.skill)};
   if (options.surgeon) words.emplace_back("--surgeon");
+  if (!options.specimen.empty())
+    words.insert(words.end(), {"--specimen", options.specimen.string()});
   if (options.bus_clock) words.emplace_back("--bus-clock");
   Pipe input, output;
   if (!input.open() || !output.open()) return not_started(program, std::strerror(errno));

@@ -14,9 +14,10 @@ namespace tractus::devices {
 struct RigProcessOptions {
   std::filesystem::path program;  ///< empty: `tractus-rig` beside this program
   std::uint64_t seed = 1;
-  double skill = 0.5;      ///< of the simulated surgeon, 0 … 1
-  bool surgeon = true;     ///< a simulated one pushes and turns; else nobody does
-  bool bus_clock = false;  ///< its time moves with the bus, as fast as it goes
+  double skill = 0.5;                   ///< of the simulated surgeon, 0 … 1
+  bool surgeon = true;                  ///< a simulated one pushes and turns; else nobody does
+  std::filesystem::path specimen = {};  ///< material in front of the probe; empty: none
+  bool bus_clock = false;               ///< its time moves with the bus, as fast as it goes
 };
 
 /// Ends the process when it goes; the process ends by itself when the station is killed.

@@ -7,6 +7,7 @@
 #include "station/rig/linear_axis.hpp"
 #include "station/rig/rotary_axis.hpp"
 #include "station/rig/sensor.hpp"
+#include "station/rig/specimen.hpp"
 #include "station/rig/surgeon.hpp"
 
 namespace tractus::rig {
@@ -19,6 +20,7 @@ struct MachineParameters {
   RotaryParameters rotary;
   SensorParameters sensor;
   SurgeonParameters surgeon;
+  Specimen specimen;  ///< in front of the probe, while no simulated surgeon is at work
   std::uint64_t seed = 1;
 };
 
@@ -61,6 +63,7 @@ class Machine {
   Drive drive_;
   Sensor sensor_;
   Surgeon surgeon_;
+  Specimen specimen_;
   Command command_;
   World world_;
   std::uint32_t steps_ = 0;

@@ -11,6 +11,7 @@ core::Result<MadeRig> make_sim_rig(const RigOptions& options) {
                                         .seed = options.seed,
                                         .skill = options.skill,
                                         .surgeon = options.surgeon,
+                                        .specimen = options.specimen,
                                         .bus_clock = false}));
   std::string address = process.address();
   auto device = TRY(modbus_rig(address));

@@ -25,7 +25,7 @@ constexpr const char* kExamples = R"(Examples:
 Registers: station/devices/rig-registers.md. Nothing here is a machine: all it says is simulated.)";
 
 struct Options {
-  std::string address = "127.0.0.1", rtu;
+  std::string address = "127.0.0.1", rtu, specimen;
   int port = 1502, baud = 115200;
   std::uint64_t seed = 1;
   double travel_m = 0.1, skill = 0.5, duration_s = 0.0;
@@ -71,6 +71,8 @@ void add(CLI::App& app, Options& o) {
   app.add_option("--skill", o.skill, "skill of the simulated surgeon, 0 to 1")
       ->check(CLI::Range(0.0, 1.0))
       ->capture_default_str();
+  app.add_option("--specimen", o.specimen,
+                 "file of a SIMULATED material in front of the probe, tractus-specimen/1");
   app.add_option("--duration", o.duration_s,
                  "time after which the program ends, in seconds; 0: it runs until it is stopped")
       ->check(CLI::Range(0.0, 1e6))
@@ -113,6 +115,9 @@ core::Result<int> run(const Options& o) {
   machine.seed = o.seed;
   machine.linear.travel_m = o.travel_m;
   machine.surgeon = rig::SurgeonParameters::of_skill(o.skill);
+  if (!o.specimen.empty())
+    machine.specimen =
+        TRY(rig::Specimen::from_json(TRY(core::read_json(o.specimen)), o.specimen + ": "));
   rig::World world;
   world.surgeon = o.surgeon;
   if (!o.bus_clock) become_urgent();
