@@ -8,6 +8,7 @@
 #include "core/json.hpp"
 #include "core/progress.hpp"
 #include "core/try.hpp"
+#include "lab/discover/table_effect.hpp"
 
 namespace tractus {
 namespace commands {
@@ -29,6 +30,10 @@ core::Result<void> write_proposals(const lab_io::LabResult& answer,
       const auto id = term.effect["id"].get<std::string>();
       TRY(core::write_json(folder / (id.substr(id.find(':') + 1) + ".json"), term.effect));
     }
+  if (answer.discovery->unknown)
+    if (const auto table =
+            lab::table_effect(*answer.discovery->unknown, "expression:unknown_function"))
+      TRY(core::write_json(folder / "unknown_function.json", *table));
   return {};
 }
 

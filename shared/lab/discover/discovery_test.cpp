@@ -7,8 +7,10 @@
 #include <functional>
 
 #include "effects/expression.hpp"
+#include "lab/discover/table_effect.hpp"
 #include "lab/identify/least_squares.hpp"
 #include "lab/rigs/probing/problem.hpp"
+#include "models/probing_runtime.hpp"
 
 namespace tractus {
 namespace lab {
@@ -120,7 +122,47 @@ TEST(Discovery, SaysThatAFunctionIsUnknownWhereNoFormulaIsIt) {
   ASSERT_TRUE(d.unknown);
   EXPECT_EQ(d.unknown->signals.front(), "x_m");
   for (const Proposal& proposal : d.proposals) EXPECT_LE(proposal.probability, 0.5);
+  // Added as a table, it takes the error down to what such a table leaves.
+  if (d.unknown->signals.size() == 1) {
+    const auto table = table_effect(*d.unknown, "expression:unknown_function");
+    ASSERT_TRUE(table);
+    EXPECT_THAT((*table)["summary"].get<std::string>(), HasSubstr("a table of"));
+  }
   EXPECT_THAT(sentences(d, "N"), HasSubstr("an unknown function of x_m"));
+}
+
+TEST(TableEffect, IsStraightBetweenItsKnotsAndConstantBeyond) {
+  UnknownFunction function;
+  function.signals = {"x_m"};
+  function.units = {"m"};
+  function.knots = {{0.001, 0.004, 0.010}};
+  function.force_N = {2.0, -1.0, 0.5};
+  const auto table = table_effect(function, "expression:unknown_function");
+  ASSERT_TRUE(table);
+  const auto effect = effects::Expression::from_json(*table, "", effects::probing_expressions());
+  ASSERT_TRUE(effect) << effect.error().what;
+  models::ProbingModel model;
+  model.layers = {{0.0, 0.05, 1e-9, 1e-9, 0.0}};  // next to nothing beside it
+  model.effects = {effect->use()};
+  const auto runtime = models::ProbingRuntime::make(model, 0.05);
+  ASSERT_TRUE(runtime) << runtime.error().what;
+  const effects::ProbingMotion motion{.t_s = {0.0, 0.1, 0.2, 0.3, 0.4, 0.5},
+                                      .x_m = {0.0, 0.001, 0.0025, 0.004, 0.007, 0.020},
+                                      .v_m_s = std::vector<double>(6, 0.0),
+                                      .a_m_s2 = std::vector<double>(6, 0.0)};
+  models::ProbingForces forces;
+  runtime->predict(motion, forces);
+  const double expected_N[] = {2.0, 2.0, 0.5, -1.0, -0.25, 0.5};  // straight lines by hand
+  for (int k = 0; k < 6; ++k) EXPECT_NEAR(forces.fz_N[std::size_t(k)], expected_N[k], 1e-4) << k;
+}
+
+TEST(TableEffect, OfTwoSignalsThereIsNone) {
+  UnknownFunction function;
+  function.signals = {"x_m", "v_m_s"};
+  function.units = {"m", "m/s"};
+  function.knots = {{0.0, 1.0}, {0.0, 1.0}};
+  function.force_N = {0.0, 1.0, 2.0, 3.0};
+  EXPECT_FALSE(table_effect(function, "expression:unknown_function"));
 }
 
 TEST(Discovery, ProposesNothingForAModelThatIsComplete) {

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "effects/expression.hpp"
+#include "lab/discover/table_effect.hpp"
 #include "lab/identify/verdict_text.hpp"
 
 namespace tractus {
@@ -267,6 +268,8 @@ Json to_json(const Discovery& d) {
                     {"units", d.unknown->units},
                     {"knots", std::move(knots)},
                     {"force_N", numbers(d.unknown->force_N)}};
+  const auto effect = table_effect(*d.unknown, "expression:unknown_function");
+  out["unknown"]["effect"] = effect ? *effect : Json();
   return out;
 }
 
