@@ -93,11 +93,13 @@ class LabRun {
   }
 
  private:
-  Result<lab_io::Case> opened(const store::ModelVersion& model, double from, double width) {
+  Result<lab_io::Case> opened(const store::ModelVersion& model, double from, double width,
+                              bool keep_recordings = false) {
     return lab_io::open_case({.model = objects_.path_of(model.sha256),
                               .measurements = objects_.path_of(of_.set.id),
                               .own = wish_.own,
-                              .threads = threads()},
+                              .threads = threads(),
+                              .keep_recordings = keep_recordings},
                              watch_.at("reading the measurements", from, width));
   }
 
@@ -132,8 +134,8 @@ class LabRun {
   }
 
   Result<Outcome> diagnose() {
-    const auto opened_case = TRY(opened(of_.model, 0.0, 0.3));
-    lab_io::DiagnoseRequest how{.options = {}, .report = true};
+    const auto opened_case = TRY(opened(of_.model, 0.0, 0.3, true));
+    lab_io::DiagnoseRequest how{.options = {}, .report = true, .weigh_programs = true};
     how.options.threads = threads();
     how.options.early = [this](const std::vector<lab::Ranked>& ranking) {
       note_ranking(ranking);

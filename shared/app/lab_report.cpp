@@ -167,6 +167,10 @@ std::string printed_diagnosis(const lab_io::LabResult& answer) {
   if (d.discriminating_experiment)
     out +=
         fmt::format("\nRecommended next recording: {}.\n", d.discriminating_experiment->recording);
+  for (const lab::ProgramValue& value : answer.programs)
+    out += fmt::format(
+        "  {:24}{:4.0f} s   expected gain in the probability of the true answer {:.2f}\n",
+        value.program.name, value.seconds, value.expected_gain);
   return out + notes(d.notes);
 }
 

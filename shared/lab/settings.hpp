@@ -277,6 +277,8 @@ struct SelectionSettings {
   double price_nats = 5.0;
   /// A mean square below this says nothing more: the noise is known no better. Tuned.
   double least_mean_square = 0.02;
+  /// Steps to the least strength that would have been seen. Numeric.
+  int sensitivity_steps = 4;
 };
 
 /// Probabilities over structures.
@@ -290,6 +292,10 @@ struct PosteriorSettings {
   double unforeseen = 0.02;
   /// From this probability on it is asked whether a structure lowers the unweighted error. Bound.
   double least_asked = 0.002;
+  /// From this probability on a structure counts as left, to be told from the others by a further recording. Bound.
+  double least_left = 0.03;
+  /// So many at most. Bound.
+  std::size_t most_left = 3;
   /// Bayesian bootstraps over the trials. Bound.
   int bootstraps = 400;
 };

@@ -122,7 +122,17 @@ Json diagnosis_schema() {
   const Json settle = object(
       {{"between", array(text("identifier of an effect"), "effects that it would distinguish")},
        {"recording", text("the recording to make")},
-       {"expected_gain", nullable(number("1", "expected log Bayes factor"))}});
+       {"expected_gain",
+        nullable(
+            number("1", "expected rise of the true structure's probability; null: not simulated"))},
+       {"programs",
+        optional(array(
+            object({{"name", text("name of the recording")},
+                    {"recording", text("the recording to make")},
+                    {"duration_s", number("s", "duration of its repetitions")},
+                    {"expected_gain", nullable(number("1", "expected rise of the probability"))},
+                    {"program", anything("Motion in the format tractus-program/1")}}),
+            "recordings that were simulated, best first"))}});
   const Json base = object({{"rmse", figure("root mean square error of the supplied model")},
                             {"held_out_rmse", figure("the same on trials that were not fitted")},
                             {"noise_floor", figure("error that a true model would have")}});
@@ -150,6 +160,11 @@ Json diagnosis_schema() {
        {"steps", array(step, "fall of the error as the effects are added")},
        {"confounded", array(tuple(text("identifier of an effect"), 2, "two effects"),
                             "pairs of effects that the recording cannot distinguish")},
+       {"hypotheses",
+        optional(array(
+            object({{"effects", array(text("identifier of an effect"), "none: nothing is missing")},
+                    {"probability", share("its probability among all that were fitted")}}),
+            "structures that are left, most probable first"))},
        {"settle", nullable(settle)},
        {"torque", optional(torque)},
        {"depends_on", text("signal on which an unexplained residual depends; else empty")},
@@ -199,12 +214,18 @@ Json tract_map_schema() {
 }  // namespace
 
 std::vector<NamedSchema> lab_answer_schemas() {
-  const Json ranked =
-      object({{"id", text("identifier of the effect")},
-              {"probability", share("probability that the effect is missing")},
-              {"held_out_rmse", figure("error on held-out trials with the effect added")},
-              {"note", optional(text("reason why the effect was not tried"))},
-              {"own", optional(truth("true: an effect that a user wrote"))}});
+  const Json ranked = object(
+      {{"id", text("identifier of the effect")},
+       {"probability", share("probability that the effect is missing")},
+       {"held_out_rmse", figure("error on held-out trials with the effect added")},
+       {"note", optional(text("reason why the effect was not tried"))},
+       {"own", optional(truth("true: an effect that a user wrote"))},
+       {"detection_limits",
+        optional(array(object({{"parameter", text("strength of the effect")},
+                               {"value", nullable(number("the parameter's", "least value seen"))},
+                               {"text", text("that in words, with its unit")}}),
+                       "the least values at which an effect that is not named would have been; a "
+                       "value of null: not within its range"))}});
   return {{"Distribution", distribution_schema()},
           {"Spectrum", spectrum_schema()},
           {"RankedEffect", ranked},

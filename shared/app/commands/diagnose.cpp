@@ -17,7 +17,7 @@ namespace {
 constexpr std::size_t kProposals = 5;  // written where their number is not given
 
 struct DiagnoseOptions : LabOptions {
-  std::filesystem::path out_model, proposals;
+  std::filesystem::path out_model, proposals, next_recording;
   std::size_t propose = 0;
 };
 
@@ -38,7 +38,8 @@ core::Result<void> write_proposals(const lab_io::LabResult& answer,
 }
 
 Outcome run_diagnose(const DiagnoseOptions& options) {
-  for (const auto& file : {options.report, options.out_model}) TRY(writable(file));
+  for (const auto& file : {options.report, options.out_model, options.next_recording})
+    TRY(writable(file));
   if (!options.proposals.empty() && !std::filesystem::is_directory(options.proposals))
     return core::Error{core::Errc::bad_input,
                        fmt::format("{}: there is no such folder", options.proposals.string())};
@@ -47,11 +48,14 @@ Outcome run_diagnose(const DiagnoseOptions& options) {
       .options = {}, .report = !options.report.empty(), .propose = options.propose};
   if (!options.proposals.empty() && wish.propose == 0) wish.propose = kProposals;
   wish.options.threads = options.sources.threads;
+  wish.weigh_programs = options.sources.keep_recordings;
   const auto bar = core::terminal_progress("trying effects");
   const auto answer = TRY(lab_io::diagnosed(opened_case, wish, bar));
   if (bar) bar(1.0);
   TRY(write_files(answer, options.out_model, options.report));
   TRY(write_proposals(answer, options.proposals));
+  if (!options.next_recording.empty() && !answer.programs.empty())
+    TRY(core::write_json(options.next_recording, answer.programs.front().program.to_json()));
   fmt::print("{}", options.json ? answer.json.dump(2) + "\n" : printed_diagnosis(answer));
   return 0;
 }
@@ -74,9 +78,17 @@ Command diagnose_command() {
                            "also search for formulas that explain what no effect of the catalogue "
                            "does, and propose so many at most")
                 ->check(CLI::Range(1, 20));
-            app.add_option("--write-proposals", options->proposals,
-                           "folder for the proposed formulas as user effects (tractus-effect/1), "
-                           "proposal_1.json and so on, to be added with --effect");
+            app.add_option(
+                "--write-proposals", options->proposals,
+                "folder for the proposed formulas as user effects (tractus-effect/1), "
+                "proposal_1.json and so on, to be added with --effect; unknown_function.json is "
+                "the best function without a formula, as a table");
+            app.add_option(
+                   "--next-recording", options->next_recording,
+                   "where more than one explanation is left: simulate what further recordings "
+                   "would tell, and write the one that decides most per minute as a program "
+                   "(tractus-program/1) for tractus-station record --program; probing rig")
+                ->each([options](const std::string&) { options->sources.keep_recordings = true; });
             return [options] { return run_diagnose(*options); };
           }};
 }

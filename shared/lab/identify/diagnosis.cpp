@@ -9,6 +9,7 @@
 #include "lab/identify/fit_report.hpp"
 #include "lab/identify/residual_dependence.hpp"
 #include "lab/identify/selection.hpp"
+#include "lab/identify/sensitivity.hpp"
 #include "lab/identify/structure_posterior.hpp"
 #include "lab/settings.hpp"
 
@@ -92,6 +93,19 @@ std::vector<Ranked> ranking(const Residual& residual, Selection& selection,
     return a.held_out_rmse.value_or(1e300) < b.held_out_rmse.value_or(1e300);
   });
   return out;
+}
+
+/// How small each effect that is not named would have been seen.
+void add_detection_limits(const Residual& residual, const Selection& selection,
+                          const Solution& final, double rmse, std::vector<Ranked>& ranking) {
+  const bool is_base = final.structure.effects.empty();
+  for (Ranked& ranked : ranking) {
+    const auto on_base = selection.screens().find(ranked.id);
+    if (on_base == selection.screens().end() || contains(final.structure, ranked.id)) continue;
+    ranked.detection_limits = detection_limits(
+        residual, final, rmse,
+        is_base ? on_base->second : linear_screen(residual, final, ranked.id), ranked.id);
+  }
 }
 
 /// Is more left than noise: something that recorded signals predict and that is material, or an error so far above the
@@ -195,7 +209,10 @@ Result<Diagnosis> diagnose(const Problem& problem, const DiagnoseOptions& option
                     "something with a slow memory is missing that is in no catalogue",
                     selection.refused()));
   out.ranking = ranking(residual, selection, posterior);
+  if (options.detection_limits)
+    add_detection_limits(residual, selection, final, out.final_fit.rmse, out.ranking);
   out.confounded = posterior.confounded();
+  out.hypotheses = posterior.hypotheses(selection);
   out.discriminating_experiment = posterior.discriminating_experiment(problem);
   if (std::size_t(problem.trials()) < kAnswer.few_trials)
     out.notes.push_back(

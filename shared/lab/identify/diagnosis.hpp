@@ -38,6 +38,12 @@ struct FoundEffect {
   std::vector<FoundParameter> parameters;
 };
 
+/// How small a strength of an effect would have been seen by these recordings.
+struct DetectionLimit {
+  std::string parameter;        ///< as in a model file, a component with its index: "friction_N"
+  std::optional<double> value;  ///< nothing: not even at the end of its range
+};
+
 /// An effect of the catalogue by itself on top of the base (or, once some were found, on top of
 /// the others found).
 struct Ranked {
@@ -45,6 +51,7 @@ struct Ranked {
   double probability = 0.0;
   std::optional<double> held_out_rmse;  ///< nothing when it was not tried
   std::string note;  ///< "not excited: …", "at the edge of its range", or empty
+  std::vector<DetectionLimit> detection_limits = {};  ///< of an effect that is not named
 };
 
 /// The error as effects are added one by one, in the order of what they bring.
@@ -53,10 +60,18 @@ struct Step {
   double rmse = 0.0, held_out_rmse = 0.0;
 };
 
+/// A structure that the data leave, with what it would be then.
+struct Hypothesis {
+  Structure structure;
+  double probability = 0.0;  ///< among all that were fitted
+  std::vector<double> values;
+};
+
 struct DiscriminatingExperiment {
   std::vector<std::string> between;  ///< two effects, or one and "nothing"
   std::string recording;             ///< what to record, in words
-  double expected_gain = 0.0;        ///< in the probability of the right answer, 0 … 1
+  /// Of the probability of the true one, as simulated recordings say; nothing where none were simulated.
+  std::optional<double> expected_gain = {};
 };
 
 struct Diagnosis {
@@ -71,6 +86,7 @@ struct Diagnosis {
   std::vector<Ranked> ranking;  ///< most probable first; the whole catalogue
   std::vector<Step> steps;
   std::vector<std::pair<std::string, std::string>> confounded;
+  std::vector<Hypothesis> hypotheses;  ///< those left, most probable first, at most three
   std::optional<DiscriminatingExperiment> discriminating_experiment;
   std::string depends_on;  ///< what an unexplained rest varies with, in words; else empty
   /// Share of the rest's mean square that recorded signals predict in held-out trials; 0 unless more is missing.
@@ -83,7 +99,8 @@ struct Diagnosis {
 struct DiagnoseOptions {
   int threads = 2;
   int max_effects = 3;
-  std::vector<std::string> only;  ///< if not empty: try these effects alone
+  std::vector<std::string> only = {};  ///< if not empty: try these effects alone
+  bool detection_limits = true;        ///< also of the effects that are not named
   /// Told the ranking once, early: every effect by itself was tried, none together.
   std::function<void(const std::vector<Ranked>&)> early = {};
 };

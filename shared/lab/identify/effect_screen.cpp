@@ -1,11 +1,10 @@
 #include "lab/identify/effect_screen.hpp"
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
 #include "core/require.hpp"
+#include "lab/identify/projection.hpp"
 #include "lab/settings.hpp"
 
 namespace tractus {
@@ -29,41 +28,6 @@ Block block_of(const std::vector<Parameter>& parameters, std::string_view effect
     }
   return block;
 }
-
-/// The normal equations of what is fitted already, solved once for all looks.
-class Base {
- public:
-  explicit Base(const Solution& at)
-      : at_(at),
-        weights_(robust_weights(at.residual, at.scale)),
-        g_(gram(at, weights_, 0, at.residual.size())) {
-    add_prior(at, g_);
-    weighted_ = weights_.asDiagonal() * at.jacobian;
-    for (Eigen::Index k = 0; k < g_.a.rows(); ++k)
-      g_.a(k, k) += 1e-12 * std::max(g_.a(k, k), 1e-12);
-    if (g_.a.rows() > 0) factor_.compute(g_.a);
-  }
-
-  /// Normal equations of more columns with the base projected out.
-  Gram rest(const Eigen::MatrixXd& columns, Eigen::VectorXd& norms) const {
-    const Eigen::MatrixXd wc = weights_.asDiagonal() * columns;
-    Gram out{columns.transpose() * wc, wc.transpose() * at_.residual};
-    norms = out.a.diagonal();
-    if (g_.a.rows() == 0) return out;
-    const Eigen::MatrixXd cross = weighted_.transpose() * columns;
-    const Eigen::MatrixXd solved = factor_.solve(cross);
-    out.a -= cross.transpose() * solved;
-    out.b -= solved.transpose() * g_.b;
-    return out;
-  }
-
- private:
-  const Solution& at_;
-  Eigen::VectorXd weights_;
-  Gram g_;
-  Eigen::MatrixXd weighted_;
-  Eigen::LDLT<Eigen::MatrixXd> factor_;
-};
 
 /// Best coefficients of the columns, only those in `allowed` signs; the gain they bring.
 double best(const Gram& rest, const std::vector<bool>& positive, Eigen::VectorXd& coefficients) {
@@ -89,7 +53,7 @@ double best(const Gram& rest, const std::vector<bool>& positive, Eigen::VectorXd
 }
 
 /// One start of an effect looked at.
-void look_at(const Residual& residual, const Solution& at, const Base& base,
+void look_at(const Residual& residual, const Solution& at, const Projection& base,
              const Structure& structure, const std::vector<Parameter>& parameters,
              const std::vector<double>& carried_values, const Block& block,
              const std::vector<double>& start, LinearScreen& out) {
@@ -114,8 +78,8 @@ void look_at(const Residual& residual, const Solution& at, const Base& base,
   Eigen::MatrixXd columns = residual.near(structure, off, points);
   columns.colwise() -= elsewhere ? residual(structure, off) : at.residual;
   Eigen::VectorXd norms, coefficients;
-  const Gram rest = base.rest(columns, norms);
-  LinearScreen::Start found{off, best(rest, positive, coefficients)};
+  const Gram rest = base.without_fitted(columns, norms);
+  LinearScreen::Start found{off, best(rest, positive, coefficients), {}};
   const double n = double(at.residual.size());
   for (std::size_t i = 0; i < strengths.size(); ++i) {
     const auto k = Eigen::Index(i);
@@ -128,6 +92,7 @@ void look_at(const Residual& residual, const Solution& at, const Base& base,
     if (c == 0.0) c = kScreen.first_strength;
     const double unit = points[i][at_value] - off[at_value];
     found.values[at_value] = std::clamp(off[at_value] + c * unit, p.low, p.high);
+    found.strengths.push_back({at_value, unit, rest.a(k, k)});
   }
   out.starts.push_back(std::move(found));
 }
@@ -171,12 +136,12 @@ LinearScreen linear_screen(const Residual& residual, const Solution& at, std::st
   if (block.count == 0) {  // free per trial: the problem eliminates it
     const Eigen::VectorXd there = residual(structure, values);
     const double gain = robust_loss(at.residual, at.scale) - robust_loss(there, at.scale);
-    out.starts.push_back({values, gain});
+    out.starts.push_back({values, gain, {}});
     out.excited = true;
     out.independent_share = 1.0;
     return out;
   }
-  const Base base(at);
+  const Projection base(at);
   for (const auto& start : residual.problem().starts(effect, at.residual))
     look_at(residual, at, base, structure, parameters, values, block, start, out);
   std::ranges::stable_sort(out.starts, std::greater<>(), &LinearScreen::Start::gain);

@@ -18,9 +18,17 @@ std::vector<double> carried(const std::vector<Parameter>& to, const Solution& fr
 
 /// What a linear screen says about an effect.
 struct LinearScreen {
+  /// A number that was moved from where its effect vanishes.
+  struct Strength {
+    std::size_t parameter = 0;  ///< of the larger structure
+    double moved = 0.0;         ///< by how much
+    double response =
+        0.0;  ///< sum of squares, whitened, of what that adds and the base cannot imitate
+  };
   struct Start {
     std::vector<double> values;  ///< of the larger structure
     double gain = 0.0;           ///< by which the loss should fall
+    std::vector<Strength> strengths;
   };
   std::vector<Start> starts;  ///< best first
   /// Share of the effect's response that the base cannot imitate, at the best start: 0 if the

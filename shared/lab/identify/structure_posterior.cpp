@@ -124,6 +124,14 @@ double StructurePosterior::of_effect(const std::string& id) const {
   return sum;
 }
 
+std::vector<Hypothesis> StructurePosterior::hypotheses(const Selection& selection) const {
+  std::vector<Hypothesis> out;
+  for (const Entry& e : entries_)
+    if (e.probability >= kPosterior.least_left && out.size() < kPosterior.most_left)
+      out.push_back({e.structure, e.probability, selection.tried().at(name(e.structure)).values});
+  return out;
+}
+
 std::vector<std::pair<std::string, std::string>> StructurePosterior::confounded() const {
   std::vector<std::pair<std::string, std::string>> out;
   double chosen = 1.0;
@@ -151,7 +159,6 @@ std::optional<DiscriminatingExperiment> StructurePosterior::discriminating_exper
     DiscriminatingExperiment out;
     out.between = {a.empty() ? "nothing" : a, b.empty() ? "nothing" : b};
     out.recording = experiment_for(space, a.empty() ? b : a, a.empty() ? "" : b);
-    out.expected_gain = std::clamp(kPosterior.settled - now, 0.0, 1.0);
     return out;
   }
   return {};

@@ -25,6 +25,8 @@ class StructurePosterior {
   double of_structure(const Structure& structure) const;
   /// Of all structures with that effect.
   double of_effect(const std::string& id) const;
+  /// Those that are left: each of at least PosteriorSettings::least_left, most probable first.
+  std::vector<Hypothesis> hypotheses(const Selection& selection) const;
   /// Pairs of an effect named and one that does nearly as well in its place.
   std::vector<std::pair<std::string, std::string>> confounded() const;
   std::optional<DiscriminatingExperiment> discriminating_experiment(

@@ -100,6 +100,13 @@ std::string figure(double value, std::string_view unit) {
   return unit.empty() ? figure(value) : fmt::format("{} {}", figure(value), unit);
 }
 
+std::string text_of(const DetectionLimit& limit) {
+  const std::string parameter = limit.parameter.substr(0, limit.parameter.find('/'));
+  const auto [name, unit] = name_and_unit(parameter);
+  return limit.value ? fmt::format("{} {}", name, figure(*limit.value, unit))
+                     : fmt::format("{}: not within its range", name);
+}
+
 VerdictText sentences(const Diagnosis& d, std::string_view unit) {
   std::vector<std::string> names;
   for (const FoundEffect& found : d.effects) names.push_back(effects::label_of(found.id));

@@ -30,4 +30,7 @@ struct VerdictText {
 };
 VerdictText sentences(const Diagnosis& diagnosis, std::string_view unit);
 
+/// "friction 0.052 N", "stiffness: not within its range".
+std::string text_of(const DetectionLimit& limit);
+
 }  // namespace tractus::lab

@@ -102,6 +102,31 @@ Result<void> known(const lab::Problem& problem, const std::string& id) {
   return {};
 }
 
+/// Recordings that would decide, best first; the best one takes the place of the recommendation in words.
+Result<std::vector<lab::ProgramValue>> programs_for(const Case& opened, int threads,
+                                                    lab::Diagnosis& diagnosis,
+                                                    const core::Progress& progress) {
+  if (!opened.kept || !diagnosis.discriminating_experiment) return std::vector<lab::ProgramValue>{};
+  auto out = TRY(lab::weigh_programs(*opened.problem, diagnosis, opened.kept->model,
+                                     opened.kept->set, {.threads = threads}, progress));
+  if (!out.empty() && out.front().expected_gain > 0.0) {
+    diagnosis.discriminating_experiment->recording = out.front().program.words;
+    diagnosis.discriminating_experiment->expected_gain = out.front().expected_gain;
+  }
+  return out;
+}
+
+core::Json to_json(const std::vector<lab::ProgramValue>& programs) {
+  core::Json out = core::Json::array();
+  for (const lab::ProgramValue& value : programs)
+    out.push_back({{"name", value.program.name},
+                   {"recording", value.program.words},
+                   {"duration_s", value.seconds},
+                   {"expected_gain", lab::number(value.expected_gain)},
+                   {"program", value.program.to_json()}});
+  return out;
+}
+
 }  // namespace
 
 LabResult compared(const Case& opened) {
@@ -115,14 +140,17 @@ LabResult compared(const Case& opened) {
 
 Result<LabResult> diagnosed(const Case& opened, const DiagnoseRequest& wish,
                             const core::Progress& progress) {
-  auto diagnosis =
-      TRY(lab::diagnose(*opened.problem, wish.options,
-                        part_of(progress, 0.0, wish.report || wish.propose ? 0.6 : 1.0)));
+  auto diagnosis = TRY(lab::diagnose(
+      *opened.problem, wish.options,
+      part_of(progress, 0.0, wish.report || wish.propose || wish.weigh_programs ? 0.6 : 1.0)));
   LabResult out = begun(opened);
   if (wish.propose > 0)
     out.discovery = TRY(lab::discover(*opened.problem, diagnosis,
                                       {.threads = wish.options.threads, .most = wish.propose},
                                       part_of(progress, 0.6, 0.3)));
+  if (wish.weigh_programs)
+    out.programs =
+        TRY(programs_for(opened, wish.options.threads, diagnosis, part_of(progress, 0.6, 0.4)));
   if (auto edge = at_their_edge(diagnosis.final_fit); !edge.empty())
     diagnosis.notes.insert(diagnosis.notes.begin(), std::move(edge));
   if (auto blind = not_excited(diagnosis); !blind.empty())
@@ -134,6 +162,7 @@ Result<LabResult> diagnosed(const Case& opened, const DiagnoseRequest& wish,
   out.json = lab::to_json(diagnosis);
   const std::string& primary = opened.problem->channels().front().name;
   const auto [headline, detail] = lab::sentences(diagnosis, lab::name_and_unit(primary).unit);
+  if (!out.programs.empty()) out.json["settle"]["programs"] = to_json(out.programs);
   out.json["primary"] = primary;
   out.json["headline"] = headline;
   out.json["detail"] = detail;

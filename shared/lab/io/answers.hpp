@@ -7,6 +7,7 @@
 
 #include "core/json.hpp"
 #include "lab/discover/discovery.hpp"
+#include "lab/experiments/preposterior.hpp"
 #include "lab/identify/diagnosis.hpp"
 #include "lab/io/case.hpp"
 #include "lab/report/report.hpp"
@@ -18,6 +19,8 @@ struct LabResult {
   lab::ReportContent content;               ///< filled as far as it was asked for
   std::optional<core::Json> model;          ///< the better model, as a model file
   std::optional<lab::Discovery> discovery;  ///< where formulas were asked for
+  std::vector<lab::ProgramValue>
+      programs;  ///< recordings that would decide, where these were asked for, best first
 };
 
 /// The model as it is given, beside the measurements.
@@ -27,6 +30,9 @@ struct DiagnoseRequest {
   lab::DiagnoseOptions options;
   bool report = false;      ///< also compare before and after, for the page
   std::size_t propose = 0;  ///< formulas for what no catalogue explains, at most
+  /// Simulates recordings that would decide between the structures left: of the probing rig, opened with its recordings
+  /// kept. Where nothing is open it costs nothing.
+  bool weigh_programs = false;
 };
 /// Which effect is missing. Errors: those of lab::diagnose.
 core::Result<LabResult> diagnosed(const Case& opened, const DiagnoseRequest& wish,

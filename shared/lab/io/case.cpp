@@ -156,6 +156,7 @@ Result<Case> open_probing(models::ProbingModel model, const Sources& sources,
   if (model.states_rotary && records_torque(set))
     opened.torque = TRY(lab::make_probing_problem(
         about_axis(model), set, {.threads = sources.threads, .torque_beside_force = true}));
+  if (sources.keep_recordings) opened.kept = {model, set};
   return with(std::move(opened),
               lab::make_probing_problem(
                   model, std::move(set),

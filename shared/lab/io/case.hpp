@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,6 +12,8 @@
 #include "lab/compare/describe.hpp"
 #include "lab/identify/problem.hpp"
 #include "lab/io/own_effect.hpp"
+#include "models/probing_model.hpp"
+#include "trial/probing_set.hpp"
 
 namespace tractus::lab_io {
 
@@ -19,6 +22,13 @@ struct Sources {
   std::filesystem::path measurements;  ///< a folder or a zip, tractus-measurements/1
   std::vector<OwnEffect> own = {};     ///< the user's own effects, candidates as the catalogue's
   int threads = 2;
+  bool keep_recordings = false;  ///< for weighing programs
+};
+
+/// What a probing problem was made of.
+struct ProbingRecordings {
+  models::ProbingModel model;
+  trial::ProbingSet set;
 };
 
 /// What the lab works on. Holds all that it needs: files may go once it is open.
@@ -31,6 +41,7 @@ struct Case {
   std::unique_ptr<lab::Problem>
       torque;  ///< about the probe's axis, where it was recorded beside the force; else null
   lab::Recorded recorded;
+  std::optional<ProbingRecordings> kept = {};  ///< where asked for, of the probing rig
 };
 
 /// A palpation's volume lies beside the model, if that names one, else in the set. Errors: those of

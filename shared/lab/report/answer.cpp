@@ -70,9 +70,10 @@ Json effect(const FoundEffect& found) {
 
 Json discriminating_experiment_json(const std::optional<DiscriminatingExperiment>& experiment) {
   if (!experiment) return nullptr;
-  return {{"between", experiment->between},
-          {"recording", experiment->recording},
-          {"expected_gain", number(experiment->expected_gain)}};
+  return {
+      {"between", experiment->between},
+      {"recording", experiment->recording},
+      {"expected_gain", experiment->expected_gain ? number(*experiment->expected_gain) : Json()}};
 }
 
 Json estimates(const Fit& fit) {
@@ -183,6 +184,10 @@ Json to_json(const std::vector<Ranked>& ranking) {
               {"held_out_rmse", ranked.held_out_rmse ? number(*ranked.held_out_rmse) : Json()}};
     if (!ranked.note.empty()) json["note"] = ranked.note;
     if (effects::is_expression(ranked.id)) json["own"] = true;
+    for (const DetectionLimit& limit : ranked.detection_limits)
+      json["detection_limits"].push_back({{"parameter", limit.parameter},
+                                          {"value", limit.value ? number(*limit.value) : Json()},
+                                          {"text", text_of(limit)}});
     out.push_back(std::move(json));
   }
   return out;
@@ -218,6 +223,10 @@ Json to_json(const Diagnosis& d) {
                             {"rmse", number(step.rmse)},
                             {"held_out_rmse", number(step.held_out_rmse)}});
   for (const auto& [a, b] : d.confounded) out["confounded"].push_back(Json{a, b});
+  out["hypotheses"] = Json::array();
+  for (const Hypothesis& h : d.hypotheses)
+    out["hypotheses"].push_back(
+        {{"effects", h.structure.effects}, {"probability", number(h.probability)}});
   out["settle"] = discriminating_experiment_json(d.discriminating_experiment);
   out["depends_on"] = d.depends_on;
   out["rest_explained"] = number(d.dependence_explained);

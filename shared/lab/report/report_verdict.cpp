@@ -55,6 +55,12 @@ std::string ranked_row(const ReportContent& content, const Ranked& ranked) {
                                          [&](const auto& e) { return e.id == ranked.id; });
   std::string small = known ? escaped(known->equation) : "";
   if (!ranked.note.empty()) small += (small.empty() ? "" : " · ") + escaped(ranked.note);
+  for (const DetectionLimit& limit : ranked.detection_limits) {
+    small += &limit == &ranked.detection_limits.front()
+                 ? small.empty() ? "detectable from " : " · detectable from "
+                 : ", ";
+    small += escaped(text_of(limit));
+  }
   return fmt::format(
       "<tr><td>{}{}{}<small>{}</small></td><td class=\"wide\">{}</td><td class=\"n\">{}</td>"
       "<td class=\"n\">{}</td></tr>\n",
@@ -176,10 +182,13 @@ std::string undecided(const ReportContent& content) {
     body = "<p>These recordings can hardly tell apart:</p><ul>\n" + body + "</ul>\n";
   if (const auto& experiment = content.diagnosis->discriminating_experiment) {
     body += fmt::format(
-        "<div class=\"ask\"><b>Record next: {}</b>It would tell {}; expected gain in the "
-        "probability of the right answer: {}.</div>\n",
+        "<div class=\"ask\"><b>Record next: {}</b>It would tell {}{}.</div>\n",
         escaped(experiment->recording), escaped(what_it_tells(*experiment)),
-        percent(experiment->expected_gain));
+        experiment->expected_gain
+            ? fmt::format(
+                  "; in simulated recordings the probability of the true answer rises by {}",
+                  percent(*experiment->expected_gain))
+            : "");
   }
   return section("What these recordings cannot tell", "", body);
 }

@@ -133,6 +133,7 @@ export const rankedSchema = v.object({
   probability: figure,
   held_out_rmse: figure,
   note: v.optional(v.string(), ''),
+  detection_limits: v.optional(v.array(v.object({ parameter: v.string(), value: figure, text: v.string() })), []),
 });
 
 export const diagnosisSchema = v.object({
@@ -145,7 +146,25 @@ export const diagnosisSchema = v.object({
   ranking: v.array(rankedSchema),
   steps: v.array(v.object({ model: v.string(), rmse: figure, held_out_rmse: figure })),
   confounded: v.array(v.tuple([v.string(), v.string()])),
-  settle: v.nullable(v.object({ between: v.array(v.string()), recording: v.string(), expected_gain: figure })),
+  settle: v.nullable(
+    v.object({
+      between: v.array(v.string()),
+      recording: v.string(),
+      expected_gain: figure,
+      programs: v.optional(
+        v.array(
+          v.object({
+            name: v.string(),
+            recording: v.string(),
+            duration_s: inSeconds,
+            expected_gain: figure,
+            program: v.unknown(),
+          }),
+        ),
+        [],
+      ),
+    }),
+  ),
   depends_on: v.string(),
   held_out: v.string(),
   parameters: v.array(estimate),

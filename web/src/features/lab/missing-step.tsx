@@ -2,7 +2,7 @@ import { useQuery } from '@tanstack/react-query';
 import { Link } from 'wouter';
 import { atWork, effectsQuery, reportAddress, startDiagnosis, type Diagnosis, type LabRun, type Rig } from '@/api';
 import { Badge, Button, Card, Notice, Skeleton } from '@/ui';
-import { formatFigure, formatShare, share } from '@/units';
+import { formatDuration, formatFigure, formatShare, share } from '@/units';
 import { Headline, primaryUnit } from './comparison-parts';
 import { Series, type Drawable } from './compare-step';
 import { ErrorSteps } from './error-steps';
@@ -27,6 +27,29 @@ const stepName = (name: string) =>
     ? 'Refitted, no effect added'
     : name.replace(/\+ ?([\w:]+)/g, (_, id: string) => `+ ${effectName(id)}`);
 
+type WeighedPrograms = NonNullable<Diagnosis['settle']>['programs'];
+
+/** Simulated candidate recordings with what each promises, and as files that a station plays. */
+function Programs({ programs }: { readonly programs: WeighedPrograms }) {
+  if (programs.length === 0) return null;
+  return (
+    <ul>
+      {programs.map(({ name, recording, duration_s, expected_gain, program }) => (
+        <li key={name}>
+          {recording}, {formatDuration(duration_s)}:{' '}
+          {expected_gain === null ? '–' : `gain ${formatShare(share(Math.max(0, Math.min(expected_gain, 1))))}`}{' '}
+          <a
+            download={`${name.replaceAll(' ', '-')}.program.json`}
+            href={`data:application/json,${encodeURIComponent(JSON.stringify(program))}`}
+          >
+            Program
+          </a>
+        </li>
+      ))}
+    </ul>
+  );
+}
+
 function Undetermined({ diagnosis }: { readonly diagnosis: Diagnosis }) {
   const { confounded, settle, notes } = diagnosis;
   if (confounded.length === 0 && !settle && notes.length === 0) return null;
@@ -44,7 +67,8 @@ function Undetermined({ diagnosis }: { readonly diagnosis: Diagnosis }) {
             {settle.recording} It would distinguish {joined(settle.between.map(effectName))}
             {settle.expected_gain === null
               ? '.'
-              : ` with a probability of ${formatShare(share(Math.min(settle.expected_gain, 1)))}.`}
+              : `. In simulated recordings it increases the probability of the true answer by ${formatShare(share(Math.min(settle.expected_gain, 1)))}.`}
+            <Programs programs={settle.programs} />
           </Notice>
         ) : null}
         {notes.map((note) => (

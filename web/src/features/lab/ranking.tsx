@@ -106,6 +106,22 @@ export function Ranking({ ranking, effects, unit, without, addressToTry }: Props
               </span>
             ),
         },
+        ...(ranking.some(({ detection_limits }) => detection_limits.length > 0)
+          ? [
+              {
+                name: (
+                  <Term
+                    align="end"
+                    definition="The smallest value at which these measurements would have shown the effect, computed from the fitted model and its residual."
+                  >
+                    Detectable from
+                  </Term>
+                ),
+                title: 'Detectable from',
+                cell: ({ detection_limits }: Ranked) => detection_limits.map(({ text }) => text).join(', '),
+              },
+            ]
+          : []),
         {
           name: <span className="hidden-visually">Actions</span>,
           number: true,
