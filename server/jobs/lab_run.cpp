@@ -135,7 +135,8 @@ class LabRun {
 
   Result<Outcome> diagnose() {
     const auto opened_case = TRY(opened(of_.model, 0.0, 0.3, true));
-    lab_io::DiagnoseRequest how{.options = {}, .report = true, .weigh_programs = true};
+    lab_io::DiagnoseRequest how{.options = {}, .report = true};
+    how.programs = lab_io::DiagnoseRequest::Weigh::if_undecided;
     how.options.threads = threads();
     how.options.early = [this](const std::vector<lab::Ranked>& ranking) {
       note_ranking(ranking);

@@ -48,7 +48,7 @@ Outcome run_diagnose(const DiagnoseOptions& options) {
       .options = {}, .report = !options.report.empty(), .propose = options.propose};
   if (!options.proposals.empty() && wish.propose == 0) wish.propose = kProposals;
   wish.options.threads = options.sources.threads;
-  wish.weigh_programs = options.sources.keep_recordings;
+  if (options.sources.keep_recordings) wish.programs = lab_io::DiagnoseRequest::Weigh::always;
   const auto bar = core::terminal_progress("trying effects");
   const auto answer = TRY(lab_io::diagnosed(opened_case, wish, bar));
   if (bar) bar(1.0);

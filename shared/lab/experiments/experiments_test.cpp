@@ -64,7 +64,7 @@ TEST(Preposterior, StrokesOfSeveralSpeedsTellFrictionFromDrag) {
     return fitted->values;
   };
   for (const Structure& structure : {Structure{{"coulomb_friction"}}, Structure{{}}})
-    undecided.hypotheses.push_back({structure, 0.5, values_of(structure)});
+    undecided.hypotheses.push_back({structure, 0.5, 0.5, values_of(structure)});
   const auto programs =
       weigh_programs(**problem, undecided, model, set, {.threads = 2, .draws = 1, .shortlist = 2});
   ASSERT_TRUE(programs) << programs.error().what;
@@ -81,7 +81,7 @@ TEST(Preposterior, OneStructureLeftNeedsNoRecording) {
   const auto problem = make_probing_problem(model, set, {.threads = 2});
   ASSERT_TRUE(problem);
   Diagnosis decided;
-  decided.hypotheses.push_back({{{"coulomb_friction"}}, 0.99, {}});
+  decided.hypotheses.push_back({{{"coulomb_friction"}}, 0.99, 0.99, {}});
   const auto programs = weigh_programs(**problem, decided, model, set);
   ASSERT_TRUE(programs);
   EXPECT_TRUE(programs->empty());

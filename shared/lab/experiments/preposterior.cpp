@@ -145,7 +145,8 @@ class Preposterior {
         for (int draw = 0; draw < options_.draws; ++draw) {
           if (progress && !progress(done++ / all)) return Error{Errc::cancelled, "stopped"};
           const double after = TRY(probability_after(value.program, h, draw));
-          value.expected_gain += weight_[h] / options_.draws * (after - weight_[h]);
+          value.expected_gain +=
+              weight_[h] / options_.draws * (after - diagnosis_.hypotheses[h].probability);
         }
       value.gain_per_minute = value.expected_gain / (value.seconds / 60.0);
     }
@@ -158,8 +159,8 @@ class Preposterior {
     double total = 0.0;
     for (const Hypothesis& hypothesis : diagnosis_.hypotheses) {
       truths_.push_back(TRY(SimulatedTruth::make(problem_, hypothesis)));
-      weight_.push_back(hypothesis.probability);
-      total += hypothesis.probability;
+      weight_.push_back(hypothesis.weight);
+      total += hypothesis.weight;
       ids_.insert(hypothesis.structure.effects.begin(), hypothesis.structure.effects.end());
     }
     for (double& weight : weight_) weight /= total;

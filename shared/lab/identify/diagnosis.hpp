@@ -64,12 +64,15 @@ struct Step {
 struct Hypothesis {
   Structure structure;
   double probability = 0.0;  ///< among all that were fitted
+  /// The same before what is not material was left out: what predicts as well as the answer, but no better than something
+  /// simpler, has no probability and yet may be true.
+  double weight = 0.0;
   std::vector<double> values;
 };
 
 struct DiscriminatingExperiment {
   std::vector<std::string> between;  ///< two effects, or one and "nothing"
-  std::string recording;             ///< what to record, in words
+  std::string recording = {};        ///< what to record, in words
   /// Of the probability of the true one, as simulated recordings say; nothing where none were simulated.
   std::optional<double> expected_gain = {};
 };

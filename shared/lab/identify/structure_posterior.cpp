@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <random>
 
 #include "lab/identify/fit_report.hpp"
@@ -38,9 +39,11 @@ StructurePosterior::StructurePosterior(const Residual& residual, const Selection
   for (const auto& [key, s] : selection.tried()) {
     if (s.jacobian.rows() != residual.size()) continue;
     if (!(s.structure == chosen_) && !selection.admissible(s)) continue;
-    entries_.push_back({s.structure, 0.0, s.mean_square(), held_out_losses(residual, s, scale)});
+    entries_.push_back(
+        {s.structure, 0.0, s.mean_square(), 0.0, held_out_losses(residual, s, scale)});
   }
   weigh(residual);
+  for (Entry& entry : entries_) entry.weight = entry.probability;
   leave_out_immaterial(residual, selection);
   std::ranges::stable_sort(entries_, std::greater<>(), &Entry::probability);
 }
@@ -74,9 +77,10 @@ void StructurePosterior::leave_out_immaterial(const Residual& residual,
   };
   for (;;) {
     std::vector<Entry> material;
-    for (Entry& entry : entries_)
-      if (!immaterial(entry)) material.push_back(entry);
+    std::vector<Entry> left_out;
+    for (Entry& entry : entries_) (immaterial(entry) ? left_out : material).push_back(entry);
     if (material.size() == entries_.size()) return;
+    std::ranges::move(left_out, std::back_inserter(immaterial_));
     entries_ = std::move(material);
     weigh(residual);
   }
@@ -126,9 +130,18 @@ double StructurePosterior::of_effect(const std::string& id) const {
 
 std::vector<Hypothesis> StructurePosterior::hypotheses(const Selection& selection) const {
   std::vector<Hypothesis> out;
-  for (const Entry& e : entries_)
-    if (e.probability >= kPosterior.least_left && out.size() < kPosterior.most_left)
-      out.push_back({e.structure, e.probability, selection.tried().at(name(e.structure)).values});
+  const auto add = [&](const Entry& e, double probability) {
+    if (e.weight >= kPosterior.least_left || e.structure == chosen_)
+      out.push_back({e.structure, probability, e.weight,
+                     selection.tried().at(name(e.structure)).values});
+  };
+  for (const Entry& e : entries_) add(e, e.probability);
+  for (const Entry& e : immaterial_) add(e, 0.0);
+  std::ranges::stable_sort(out, [&](const Hypothesis& a, const Hypothesis& b) {
+    const bool chosen_a = a.structure == chosen_, chosen_b = b.structure == chosen_;
+    return chosen_a != chosen_b ? chosen_a : a.weight > b.weight;
+  });
+  if (out.size() > kPosterior.most_left) out.resize(kPosterior.most_left);
   return out;
 }
 

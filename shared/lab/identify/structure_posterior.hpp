@@ -25,7 +25,8 @@ class StructurePosterior {
   double of_structure(const Structure& structure) const;
   /// Of all structures with that effect.
   double of_effect(const std::string& id) const;
-  /// Those that are left: each of at least PosteriorSettings::least_left, most probable first.
+  /// Those that are left: each of a weight of at least PosteriorSettings::least_left, of those with most weight; the chosen
+  /// one first.
   std::vector<Hypothesis> hypotheses(const Selection& selection) const;
   /// Pairs of an effect named and one that does nearly as well in its place.
   std::vector<std::pair<std::string, std::string>> confounded() const;
@@ -36,6 +37,7 @@ class StructurePosterior {
   struct Entry {
     Structure structure;
     double probability = 0.0, mean_square = 0.0;
+    double weight = 0.0;  // before what is not material was left out
     Eigen::VectorXd losses;  // by fold, held out
     std::optional<double> held_out_rmse = {};
   };
@@ -43,7 +45,8 @@ class StructurePosterior {
   bool simpler(const Structure& one, const Structure& other) const;
   void weigh(const Residual& residual);
 
-  std::vector<Entry> entries_;  // most probable first
+  std::vector<Entry> entries_;     // most probable first
+  std::vector<Entry> immaterial_;  // without a probability
   Structure chosen_;
   std::map<std::string, std::vector<std::string>>
       parents_;  // simpler effects that one contains as a limit

@@ -102,17 +102,35 @@ Result<void> known(const lab::Problem& problem, const std::string& id) {
   return {};
 }
 
+/// Of two structures the effects in which they differ, "nothing" of none.
+std::vector<std::string> differing(const lab::Structure& one, const lab::Structure& other) {
+  const auto own = [](const lab::Structure& of, const lab::Structure& against) -> std::string {
+    for (const std::string& id : of.effects)
+      if (std::ranges::find(against.effects, id) == against.effects.end()) return id;
+    return "nothing";
+  };
+  return {own(one, other), own(other, one)};
+}
+
 /// Recordings that would decide, best first; the best one takes the place of the recommendation in words.
-Result<std::vector<lab::ProgramValue>> programs_for(const Case& opened, int threads,
+Result<std::vector<lab::ProgramValue>> programs_for(const Case& opened, const DiagnoseRequest& wish,
                                                     lab::Diagnosis& diagnosis,
                                                     const core::Progress& progress) {
-  if (!opened.kept || !diagnosis.discriminating_experiment) return std::vector<lab::ProgramValue>{};
-  auto out = TRY(lab::weigh_programs(*opened.problem, diagnosis, opened.kept->model,
-                                     opened.kept->set, {.threads = threads}, progress));
-  if (!out.empty() && out.front().expected_gain > 0.0) {
-    diagnosis.discriminating_experiment->recording = out.front().program.words;
-    diagnosis.discriminating_experiment->expected_gain = out.front().expected_gain;
-  }
+  using Weigh = DiagnoseRequest::Weigh;
+  auto& experiment = diagnosis.discriminating_experiment;
+  std::vector<lab::ProgramValue> out;
+  if (!opened.kept || wish.programs == Weigh::never ||
+      (wish.programs == Weigh::if_undecided && !experiment))
+    return out;
+  out = TRY(lab::weigh_programs(*opened.problem, diagnosis, opened.kept->model, opened.kept->set,
+                                {.threads = wish.options.threads}, progress));
+  std::erase_if(out, [](const lab::ProgramValue& value) { return !(value.expected_gain > 0.0); });
+  if (out.empty()) return out;
+  if (!experiment)
+    experiment.emplace(
+        differing(diagnosis.hypotheses[0].structure, diagnosis.hypotheses[1].structure));
+  experiment->recording = out.front().program.words;
+  experiment->expected_gain = out.front().expected_gain;
   return out;
 }
 
@@ -140,17 +158,15 @@ LabResult compared(const Case& opened) {
 
 Result<LabResult> diagnosed(const Case& opened, const DiagnoseRequest& wish,
                             const core::Progress& progress) {
-  auto diagnosis = TRY(lab::diagnose(
-      *opened.problem, wish.options,
-      part_of(progress, 0.0, wish.report || wish.propose || wish.weigh_programs ? 0.6 : 1.0)));
+  const bool more = wish.report || wish.propose > 0 || wish.programs != DiagnoseRequest::Weigh::never;
+  auto diagnosis =
+      TRY(lab::diagnose(*opened.problem, wish.options, part_of(progress, 0.0, more ? 0.6 : 1.0)));
   LabResult out = begun(opened);
   if (wish.propose > 0)
     out.discovery = TRY(lab::discover(*opened.problem, diagnosis,
                                       {.threads = wish.options.threads, .most = wish.propose},
                                       part_of(progress, 0.6, 0.3)));
-  if (wish.weigh_programs)
-    out.programs =
-        TRY(programs_for(opened, wish.options.threads, diagnosis, part_of(progress, 0.6, 0.4)));
+  out.programs = TRY(programs_for(opened, wish, diagnosis, part_of(progress, 0.6, 0.4)));
   if (auto edge = at_their_edge(diagnosis.final_fit); !edge.empty())
     diagnosis.notes.insert(diagnosis.notes.begin(), std::move(edge));
   if (auto blind = not_excited(diagnosis); !blind.empty())

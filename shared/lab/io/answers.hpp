@@ -30,9 +30,8 @@ struct DiagnoseRequest {
   lab::DiagnoseOptions options;
   bool report = false;      ///< also compare before and after, for the page
   std::size_t propose = 0;  ///< formulas for what no catalogue explains, at most
-  /// Simulates recordings that would decide between the structures left: of the probing rig, opened with its recordings
-  /// kept. Where nothing is open it costs nothing.
-  bool weigh_programs = false;
+  /// Simulates recordings that would decide between the structures left; of the probing rig, opened with its recordings kept.
+  enum class Weigh { never, if_undecided, always } programs = Weigh::never;
 };
 /// Which effect is missing. Errors: those of lab::diagnose.
 core::Result<LabResult> diagnosed(const Case& opened, const DiagnoseRequest& wish,

@@ -96,7 +96,7 @@ class Truth:
         self.stiffness = self.random.uniform(1500.0, 6000.0)
         self.damping = self.random.uniform(300.0, 2000.0)
         self.noise_N = self.random.uniform(0.03, 0.1)
-        self.size_N = self.noise_N * numpy.exp(self.random.uniform(numpy.log(0.4), numpy.log(4.0)))
+        self.size_N = self.noise_N * numpy.exp(self.random.uniform(numpy.log(0.8), numpy.log(6.0)))
 
     def recording(self, x):
         x = numpy.convolve(numpy.pad(x, 10, mode="edge"), numpy.hanning(21) / numpy.hanning(21).sum(), "valid")
