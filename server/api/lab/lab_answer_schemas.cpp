@@ -164,7 +164,8 @@ Json diagnosis_schema() {
         optional(array(
             object({{"effects", array(text("identifier of an effect"), "none: nothing is missing")},
                     {"probability", share("its probability among all that were fitted")},
-                               {"weight", share("before structures no better than a simpler one were left out")}}),
+                    {"weight",
+                     share("before structures no better than a simpler one were left out")}}),
             "structures that are left, most probable first"))},
        {"settle", nullable(settle)},
        {"torque", optional(torque)},

@@ -236,6 +236,24 @@ double held_out_rmse(const Residual& residual, const Solution& at) {
   return fit.held_out_rmse;
 }
 
+const Eigen::VectorXd& held_out_squares(const Residual& residual, const Solution& at) {
+  if (at.held_out_squares.size() > 0) return at.held_out_squares;
+  const auto folds = folds_of(residual);
+  const Eigen::VectorXd weights = robust_weights(at.residual, at.scale);
+  Gram whole = gram(at, weights, 0, residual.size());
+  add_prior(at, whole);
+  Eigen::VectorXd out(folds.size());
+  parallel(int(folds.size()), residual.threads(), [&](int f) {
+    const Fold& fold = folds[std::size_t(f)];
+    const auto values = without(at, whole, gram(at, weights, fold.first, fold.count));
+    const Squares s =
+        squares(residual.problem(), at.structure, values, fold.trial, fold.from_s, fold.to_s);
+    out(f) = s.count > 0.0 ? s.judged / s.count : std::numeric_limits<double>::quiet_NaN();
+  });
+  at.held_out_squares = std::move(out);
+  return at.held_out_squares;
+}
+
 Eigen::VectorXd held_out_losses(const Residual& residual, const Solution& at, double scale) {
   const auto folds = folds_of(residual);
   const Eigen::VectorXd weights = robust_weights(at.residual, at.scale);
@@ -264,10 +282,10 @@ Eigen::VectorXd held_out_losses(const Residual& residual, const Solution& at, do
   return out;
 }
 
-Solution fit_base(const Residual& residual) {
+Solution fit_base(const Residual& residual, const Structure& structure) {
   std::vector<double> start;
-  for (const Parameter& p : residual.problem().parameters({})) start.push_back(p.start);
-  Solution at = search(residual, {}, std::move(start), nullptr, {.max_iterations = 40});
+  for (const Parameter& p : residual.problem().parameters(structure)) start.push_back(p.start);
+  Solution at = search(residual, structure, std::move(start), nullptr, {.max_iterations = 40});
   differentiate(residual, at);
   return polish(residual, std::move(at));
 }

@@ -51,6 +51,8 @@ struct Solution {
   double judged = 0.0;  ///< residuals that are not exactly 0: of those the structure says
                         ///< nothing (dry friction at rest)
 
+  mutable Eigen::VectorXd held_out_squares;  ///< see held_out_squares(); empty until asked for
+
   /// Mean of ρ over what is judged: about 1 when all is explained.
   double mean_square() const { return (loss - prior) / std::max(1.0, judged); }
 };

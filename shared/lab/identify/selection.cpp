@@ -106,6 +106,12 @@ std::vector<const Solution*> Selection::best_of(std::size_t effects, std::size_t
   return out;
 }
 
+void Selection::keep_better(const std::string& key, Solution found) {
+  const auto known = tried_.find(key);
+  if (known == tried_.end() || found.mean_square() < known->second.mean_square())
+    tried_[key] = std::move(found);
+}
+
 void Selection::singles() {
   const auto& candidates = residual_.problem().candidates();
   double done = 0.0;
@@ -117,6 +123,8 @@ void Selection::singles() {
       continue;
     LinearScreen seen = linear_screen(residual_, base(), id);
     if (seen.excited) tried_[id] = extend(residual_, base(), seen, id, kSelection.tries);
+    // A base fitted without a delay that is there has its borders elsewhere, and no way leads back from it.
+    if (candidate.facts.is_delay && seen.excited) keep_better(id, fit_base(residual_, {{id}}));
     screens_[id] = std::move(seen);
   }
 }
@@ -190,9 +198,7 @@ void Selection::grow() {
 void Selection::part(const Solution& at, const Structure& less) {
   Solution found = search(residual_, less, carried(residual_.problem().parameters(less), at), &at);
   differentiate(residual_, found);
-  const auto known = tried_.find(name(less));
-  if (known == tried_.end() || found.mean_square() < known->second.mean_square())
-    tried_[name(less)] = std::move(found);
+  keep_better(name(less), std::move(found));
 }
 
 /// Fits what is simpler than a structure: without each effect, and with each effect's simpler limit in its place.

@@ -43,6 +43,7 @@ class Selection {
 
  private:
   Solution& fitted(const Solution& from, const std::string& effect, int tries);
+  void keep_better(const std::string& key, Solution found);
   void singles();
   void refine(std::size_t effects);
   void grow();

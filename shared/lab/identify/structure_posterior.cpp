@@ -21,6 +21,13 @@ std::vector<std::string> only_in(const Structure& a, const Structure& b) {
   return out;
 }
 
+/// ln of what is left of each fold: the mean of both measures' logarithms, the first alone where nothing is judged.
+Eigen::ArrayXd log_left(const Eigen::VectorXd& losses, const Eigen::VectorXd& squares) {
+  const Eigen::ArrayXd weighted = losses.array().max(1e-300).log();
+  const Eigen::ArrayXd plain = squares.array().max(1e-300).log();
+  return squares.array().isFinite().select(0.5 * (weighted + plain), weighted);
+}
+
 /// ln of how many structures of that size there are.
 double log_structures(std::size_t candidates, std::size_t size) {
   return std::lgamma(double(candidates) + 1.0) - std::lgamma(double(size) + 1.0) -
@@ -39,8 +46,8 @@ StructurePosterior::StructurePosterior(const Residual& residual, const Selection
   for (const auto& [key, s] : selection.tried()) {
     if (s.jacobian.rows() != residual.size()) continue;
     if (!(s.structure == chosen_) && !selection.admissible(s)) continue;
-    entries_.push_back(
-        {s.structure, 0.0, s.mean_square(), 0.0, held_out_losses(residual, s, scale)});
+    entries_.push_back({s.structure, 0.0, s.mean_square(), 0.0, held_out_losses(residual, s, scale),
+                        held_out_squares(residual, s)});
   }
   weigh(residual);
   for (Entry& entry : entries_) entry.weight = entry.probability;
@@ -97,7 +104,8 @@ void StructurePosterior::weigh(const Residual& residual) {
     const Structure& structure = entries_[m].structure;
     const double of_all = log_structures(problem.candidates().size(), structure.effects.size());
     scores.col(Eigen::Index(m)) =
-        -0.5 * per_fold * entries_[m].losses.array().max(1e-300).log() - of_all / double(folds);
+        -0.5 * per_fold * log_left(entries_[m].losses, entries_[m].squares) -
+        of_all / double(folds);
   }
   std::mt19937_64 random(1);  // the same answer each time
   std::exponential_distribution<double> share(1.0);
@@ -132,8 +140,8 @@ std::vector<Hypothesis> StructurePosterior::hypotheses(const Selection& selectio
   std::vector<Hypothesis> out;
   const auto add = [&](const Entry& e, double probability) {
     if (e.weight >= kPosterior.least_left || e.structure == chosen_)
-      out.push_back({e.structure, probability, e.weight,
-                     selection.tried().at(name(e.structure)).values});
+      out.push_back(
+          {e.structure, probability, e.weight, selection.tried().at(name(e.structure)).values});
   };
   for (const Entry& e : entries_) add(e, e.probability);
   for (const Entry& e : immaterial_) add(e, 0.0);

@@ -13,7 +13,8 @@
 namespace tractus::lab {
 
 /// Probabilities over the structures that were fitted, by how well each predicts whole trials that it was not fitted to:
-/// −n/2 ln S summed over the trials, S what is left there, n the independent observations that a trial is worth, less the
+/// −n/2 ln S summed over the trials, S what is left there (the geometric mean of the fit's weighted loss and of the primary
+/// channel's mean square without weights), n the independent observations that a trial is worth, less the
 /// logarithm of the number of structures of that size; averaged over Bayesian bootstraps of the trials [Yao2018,
 /// pseudo-BMA+]. A structure has no probability if a simpler one leaves as much but for a share that is not material.
 class StructurePosterior {
@@ -37,8 +38,9 @@ class StructurePosterior {
   struct Entry {
     Structure structure;
     double probability = 0.0, mean_square = 0.0;
-    double weight = 0.0;  // before what is not material was left out
-    Eigen::VectorXd losses;  // by fold, held out
+    double weight = 0.0;      // before what is not material was left out
+    Eigen::VectorXd losses;   // by fold, held out
+    Eigen::VectorXd squares;  // the same without weights, of the primary channel
     std::optional<double> held_out_rmse = {};
   };
   void leave_out_immaterial(const Residual& residual, const Selection& selection);

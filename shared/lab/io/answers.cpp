@@ -158,7 +158,8 @@ LabResult compared(const Case& opened) {
 
 Result<LabResult> diagnosed(const Case& opened, const DiagnoseRequest& wish,
                             const core::Progress& progress) {
-  const bool more = wish.report || wish.propose > 0 || wish.programs != DiagnoseRequest::Weigh::never;
+  const bool more =
+      wish.report || wish.propose > 0 || wish.programs != DiagnoseRequest::Weigh::never;
   auto diagnosis =
       TRY(lab::diagnose(*opened.problem, wish.options, part_of(progress, 0.0, more ? 0.6 : 1.0)));
   LabResult out = begun(opened);

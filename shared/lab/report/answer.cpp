@@ -225,8 +225,9 @@ Json to_json(const Diagnosis& d) {
   for (const auto& [a, b] : d.confounded) out["confounded"].push_back(Json{a, b});
   out["hypotheses"] = Json::array();
   for (const Hypothesis& h : d.hypotheses)
-    out["hypotheses"].push_back(
-        {{"effects", h.structure.effects}, {"probability", number(h.probability)}, {"weight", number(h.weight)}});
+    out["hypotheses"].push_back({{"effects", h.structure.effects},
+                                 {"probability", number(h.probability)},
+                                 {"weight", number(h.weight)}});
   out["settle"] = discriminating_experiment_json(d.discriminating_experiment);
   out["depends_on"] = d.depends_on;
   out["rest_explained"] = number(d.dependence_explained);

@@ -349,6 +349,16 @@ double variance_within(std::span<const double> y, std::size_t length) {
   return *quietest / (root * root * root);
 }
 
+/// What errors of single samples, all one way, make of an output: no more than the greatest of them.
+double passed_on(std::span<const double> errors, const Decimator& decimator, std::size_t output) {
+  const std::size_t middle = decimator.middle(output), half = decimator.half() + 1;
+  const std::size_t from = middle > half ? middle - half : 0,
+                    to = std::min(errors.size(), middle + half + 1);
+  double sum = 0.0, most = 0.0;
+  for (std::size_t k = from; k < to; ++k) sum += errors[k], most = std::max(most, errors[k]);
+  return std::min(most, decimator.largest_tap() * sum);
+}
+
 }  // namespace
 
 void estimate_noise(ProbingRecording& r, std::span<const double> residual,
@@ -390,33 +400,27 @@ void weigh(const laws::ProbingLaw& law, ProbingRecording& r) {
                               r.noise_sd * r.noise_sd);
   for (std::size_t k = 0; k < n; ++k)
     if (motion_variance[k] > most) r.judgement[k] = Judgement::unknown_motion;
+  // What is unknown of a sample because nobody can tell on which side of a border it lies: a probe may stand there for long.
+  std::vector<double> at_border(n, 0.0);
   const bool slides = !r.recorded_x_m.empty();
   for (const double border : slides ? borders_of(law.parameters().layers) : std::vector<double>{})
-    for (std::size_t k = 0; k < n; ++k)  // on which side is nobody's to tell
-      if (std::abs(m.x_m[k] - border) < kProbingRecording.on_border_m + 3.0 * r.x_sd_m[k])
-        r.judgement[k] = Judgement::at_border;
+    for (std::size_t k = 0; k < n; ++k) {
+      const double near_m = kProbingRecording.on_border_m + 3.0 * r.x_sd_m[k];
+      if (!(std::abs(m.x_m[k] - border) < near_m)) continue;
+      r.judgement[k] = Judgement::at_border;
+      at_border[k] = std::max(at_border[k], std::abs(judged(law, r, border + near_m, k) -
+                                                     judged(law, r, border - near_m, k)));
+    }
   for (const Jump& jump : found)
     for (std::size_t k = jump.sample < reach ? 0 : jump.sample - reach;
          k < std::min(n, jump.sample + reach); ++k)
       r.judgement[k] = Judgement::at_border;
-  std::vector<double> jump_variance(r.sd_thin.size(), 0.0);
-  const std::size_t half = r.decimator.half() + 1;
-  std::size_t begin = 0;
-  for (const Jump& jump : found) {
-    const double error = r.decimator.largest_tap() * jump.size;
-    for (std::size_t j = begin; j < jump_variance.size(); ++j) {
-      const std::size_t middle = r.decimator.middle(j);
-      if (middle + half < jump.sample) {
-        begin = j;
-        continue;
-      }
-      if (middle > jump.sample + half) break;
-      jump_variance[j] += error * error;
-    }
-  }
+  for (const Jump& jump : found)
+    at_border[jump.sample] = std::max(at_border[jump.sample], jump.size);
   for (std::size_t j = 0; j < r.sd_thin.size(); ++j)
-    r.sd_thin[j] = std::sqrt(r.slow_noise_sd * r.slow_noise_sd +
-                             motion_variance[r.decimator.middle(j)] + jump_variance[j]);
+    r.sd_thin[j] =
+        std::sqrt(r.slow_noise_sd * r.slow_noise_sd + motion_variance[r.decimator.middle(j)] +
+                  std::pow(passed_on(at_border, r.decimator, j), 2));
   double sum = 0.0, count = 0.0;
   for (std::size_t k = 0; k < n; ++k)
     if (r.judgement[k] == Judgement::judged)
