@@ -135,6 +135,18 @@ describe.skipIf(bin === undefined)('on a real server', () => {
     await page.context().close();
   }, 120_000);
 
+  it('a director sees how the cohort learns and who came last', async () => {
+    const page = await enter('director');
+    await page.goto('/trainees');
+    await page.getByRole('link', { name: 'Cohorts', exact: true }).click();
+    await page.getByRole('img', { name: /^Share of correct answers by running trial number/ }).waitFor();
+    for (const name of [kAda, kBen]) await page.getByRole('link', { name }).waitFor();
+    expect(await page.getByText('behind', { exact: true }).count(), 'two of sixteen trials each').toBe(0);
+    await page.goto('/analysis');
+    await page.getByText('Two cohorts with scored trials are needed.').waitFor();
+    await page.context().close();
+  }, 60_000);
+
   it('a member of the faculty opens a palpation trial of the own cohort', async () => {
     const page = await enter('faculty');
     await page.goto('/trials');
