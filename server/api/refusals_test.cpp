@@ -8,7 +8,7 @@ namespace api {
 namespace {
 using testing::PeopleTest;
 
-constexpr std::int64_t kMinute_us = 60'000'000;
+constexpr std::int64_t kRefusalWindow_us = 60'000'000;
 
 class Refusals : public PeopleTest {
  protected:
@@ -46,7 +46,7 @@ TEST_F(Refusals, AFloodLeavesTenRowsAndItsCount) {
   EXPECT_EQ(rows().size(), 10u);
   EXPECT_EQ(get("tia", "/accounts").status, 403);  // another is noted none the less
   EXPECT_EQ(rows()[0]["detail"]["refusals_not_noted"], 190);
-  now_ += kMinute_us;
+  now_ += kRefusalWindow_us;
   for (int i = 0; i < 20; ++i) ask(request("GET", "/api/v1/accounts", cookie));
   EXPECT_EQ(rows().size(), 16u);  // five a minute
 }
@@ -57,7 +57,7 @@ TEST(RefusalLimit, HoldsAllCallersTogetherToOneRateInBoundedMemory) {
   for (int caller = 0; caller < 5000; ++caller)
     noted += limit.turn("caller-" + std::to_string(caller), 1).has_value() ? 1 : 0;
   EXPECT_EQ(noted, 120);
-  EXPECT_TRUE(limit.turn("later", 1 + kMinute_us).has_value());
+  EXPECT_TRUE(limit.turn("later", 1 + kRefusalWindow_us).has_value());
 }
 
 }  // namespace

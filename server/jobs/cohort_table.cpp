@@ -19,12 +19,14 @@ std::string cell(const std::optional<double>& number) {
   return number ? fmt::format("{}", *number) : "";
 }
 
-std::string row_of(const store::ReleasedTrial& t, const std::vector<std::string>& metrics) {
-  std::string out =
-      fmt::format("{},{},{},{},{},{},{},{},{},{}", t.id, cell(t.participant), cell(t.study),
-                  t.study.empty() ? "" : std::to_string(t.number), cell(t.level),
-                  cell(t.experience_years), cell(t.case_title), trial::name(t.rig),
-                  t.simulated ? 1 : 0, t.correct ? (*t.correct ? "1" : "0") : "");
+/// @param running  number of the trial among the participant's in this table, counted from 1
+std::string row_of(const store::ReleasedTrial& t, std::size_t running,
+                   const std::vector<std::string>& metrics) {
+  std::string out = fmt::format(
+      "{},{},{},{},{},{},{},{},{},{:.4f},{},{},{},{}", t.id, cell(t.participant), cell(t.study),
+      t.study.empty() ? "" : std::to_string(t.number), running, cell(t.cohort), cell(t.level),
+      cell(t.experience_years), t.date, t.year, cell(t.case_title), trial::name(t.rig),
+      t.simulated ? 1 : 0, t.correct ? (*t.correct ? "1" : "0") : "");
   for (const auto& id : metrics) {
     const auto at = t.metrics.find(id);
     out += ',' + (at == t.metrics.end() ? "" : cell(std::optional(at->second)));
@@ -63,7 +65,13 @@ std::map<std::string, std::string> meanings_of(const std::vector<std::string>& m
       {"participant", "pseudonym of the person, the same in every export"},
       {"study", "id of the study; empty if the trial belongs to no study"},
       {"number", "number of the trial among the participant's trials in the study, counted from 1"},
+      {"running_number",
+       "number of the trial among all trials of the participant in this table, counted from 1"},
+      {"cohort",
+       "cohort of the assignment, else the first that the person joined; empty if there is none"},
       {"level", "level of training, as the study states it"},
+      {"date", "day of the trial in UTC"},
+      {"year", "day of the trial in years, for example 2026.4986 for 2 July 2026"},
       {"experience_years", "surgical experience in years, as the study states it"},
       {"case", "title of the case"},
       {"rig", "palpation or probing"},
@@ -84,10 +92,13 @@ CohortTable cohort_table(const store::ReleasedTrials& released) {
   out.blind = released.blind();
   const auto trials = counting(released.all(), out);
   const auto metrics = metrics_of(trials);
-  out.csv = "trial,participant,study,number,level,experience_years,case,rig,simulated,correct";
+  out.csv =
+      "trial,participant,study,number,running_number,cohort,level,experience_years,date,year,case,"
+      "rig,simulated,correct";
   for (const auto& id : metrics) out.csv += ',' + cell(id);
   out.csv += '\n';
-  for (const auto& trial : trials) out.csv += row_of(trial, metrics);
+  std::map<std::string, std::size_t> done;
+  for (const auto& trial : trials) out.csv += row_of(trial, ++done[trial.participant], metrics);
   out.rows = trials.size();
   out.simulated = static_cast<std::size_t>(
       std::ranges::count_if(trials, [](const auto& trial) { return trial.simulated; }));

@@ -8,9 +8,11 @@
 namespace tractus::jobs {
 
 /// One row per trial that counts and is scored, oldest first. Columns: trial and participant (the
-/// pseudonyms of every export), study, number (of the trial among the participant's, from 1),
-/// level, experience_years, case, rig, simulated, correct (1, 0), then each metric that any row
-/// has, by its id. What is not known is an empty cell.
+/// pseudonyms of every export), study, number (of the trial among the participant's in the study,
+/// from 1), running_number (among all of the participant's in the table, from 1), cohort, level,
+/// experience_years, date and year (the day as "2026-07-02" and as 2026.4986), case, rig,
+/// simulated, correct (1, 0), then each metric that any row has, by its id. What is not known is an
+/// empty cell.
 struct CohortTable {
   std::string csv;  ///< with a header line, LF
   std::string sha256;

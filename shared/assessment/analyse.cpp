@@ -7,6 +7,7 @@
 #include <set>
 
 #include "assessment/methods_text.hpp"
+#include "assessment/pictures.hpp"
 #include "core/try.hpp"
 
 namespace tractus {
@@ -46,6 +47,8 @@ Run run_one(const PlannedAnalysis& one, const Table& table) {
   // Where the file lies is no part of the result.
   found->report.erase("file");
   out.entry["report"] = std::move(found->report);
+  out.entry["figures"] = Json::array();
+  for (const auto& figure : found->figures) out.entry["figures"].push_back(figure_json(figure));
   out.figures = std::move(found->figures);
   return out;
 }

@@ -19,7 +19,7 @@ struct Provenance {
 ///
 ///     {"format","plan":{title, question, endpoint, sha256, lock},"data":{name, sha256, rows,
 ///      rows_used, subjects, exclusions:[{where, reason, rows}]},
-///      "analyses":[{id, question, method, formula, where, report | error}],
+///      "analyses":[{id, question, method, formula, where, report and figures | error}],
 ///      "families":[{name, correction, alpha, tests:[{analysis, term, …, p, p_adjusted, holds}]}],
 ///      "published":[{where, says, printed, computed, agrees, remark}],
 ///      "methods":["sentence", …],"results":["sentence", …]}

@@ -12,18 +12,14 @@ namespace tractus {
 namespace assessment {
 namespace {
 
+using core::Json;
 using statistics::Vector;
 
 constexpr Eigen::Index kMostPoints = 1500;
-constexpr double kCross = 0.006;  // arm of a cross, as a share of the axis
+constexpr int kBandSteps = 60;
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr const char* kGreyLine = "#9aa3ad";
 constexpr const char* kRed = "#b3261e";
-
-double span(const Vector& of) {
-  const double width = of.maxCoeff() - of.minCoeff();
-  return width > 0.0 ? width : 1.0;
-}
 
 /// "1 = soft, 2 = hard"; numbers stand for themselves where they count up from 1.
 std::string numbered(const std::vector<std::string>& names) {
@@ -56,12 +52,11 @@ void add_mean(plot::Line& bars, double at, const Vector& values) {
 
 plot::Line crosses(const std::string& label, const Vector& x, const Vector& y,
                    const std::string& colour) {
-  plot::Line out{label, {}, {}, colour, 1.4, false};
-  const double dx = kCross * span(x), dy = 2.2 * kCross * span(y);
+  plot::Line out{label, {}, {}, colour, 1.4, false, true};
   const Eigen::Index step = std::max<Eigen::Index>(1, (x.size() + kMostPoints - 1) / kMostPoints);
   for (Eigen::Index i = 0; i < x.size(); i += step) {
-    add_segment(out, x[i] + dx, y[i], x[i] - dx, y[i]);
-    add_segment(out, x[i], y[i] - dy, x[i], y[i] + dy);
+    out.x.push_back(x[i]);
+    out.y.push_back(y[i]);
   }
   return out;
 }
@@ -106,19 +101,35 @@ plot::Figure residual_picture(const Vector& fitted, const Vector& residuals) {
   return {"", 900, 2, {against, normal}, ""};
 }
 
+std::function<double(double x)> band_of(const statistics::Matrix& covariance, double df) {
+  const double quantile = statistics::student_t_quantile(0.975, df);
+  return [=](double x) {
+    const double variance =
+        covariance(0, 0) + 2.0 * x * covariance(0, 1) + x * x * covariance(1, 1);
+    return quantile * std::sqrt(variance);
+  };
+}
+
 plot::Figure scatter_picture(const std::string& x_name, const Vector& x, const std::string& y_name,
-                             const Vector& y, const std::vector<RegressionLines>& lines) {
+                             const Vector& y, const std::vector<RegressionLine>& lines) {
   plot::Panel panel{"", x_name, y_name, "", {}, {}, {}, {}, {}, false, 300};
   panel.lines.push_back(crosses("observed", x, y));
   const char* colours[] = {kRed, "#2e7d32", "#7b1fa2"};
   const double low = x.minCoeff(), high = x.maxCoeff();
-  for (std::size_t k = 0; k < lines.size(); ++k)
-    panel.lines.push_back(
-        {lines[k].label,
-         {low, high},
-         {lines[k].intercept + lines[k].slope * low, lines[k].intercept + lines[k].slope * high},
-         colours[k % 3],
-         1.6});
+  for (std::size_t k = 0; k < lines.size(); ++k) {
+    const RegressionLine& line = lines[k];
+    const auto at = [&](double value) { return line.intercept + line.slope * value; };
+    panel.lines.push_back({line.label, {low, high}, {at(low), at(high)}, colours[k % 3], 1.6});
+    if (!line.reach) continue;
+    plot::Ribbon band{"95 % confidence band of the mean", {}, {}, {}, colours[k % 3]};
+    for (int i = 0; i <= kBandSteps; ++i) {
+      const double value = low + (high - low) * i / kBandSteps, reach = line.reach(value);
+      band.x.push_back(value);
+      band.low.push_back(at(value) - reach);
+      band.high.push_back(at(value) + reach);
+    }
+    panel.ribbons.push_back(std::move(band));
+  }
   return {"", 620, 1, {panel}, ""};
 }
 
@@ -142,6 +153,7 @@ plot::Figure group_picture(const std::string& x_name, const statistics::Groups& 
   panel.lines.push_back(
       crosses("", Eigen::Map<Vector>(x.data(), size), Eigen::Map<Vector>(y.data(), size)));
   panel.lines.push_back(bars);
+  panel.group_names = groups.names;
   return {"", 620, 1, {panel}, numbered(groups.names)};
 }
 
@@ -162,7 +174,55 @@ plot::Figure profile_picture(const std::vector<std::string>& levels,
   for (Eigen::Index j = 0; j < values.cols(); ++j)
     add_mean(bars, static_cast<double>(j + 1), values.col(j));
   panel.lines = {each, bars};
+  panel.group_names = levels;
   return {"", 620, 1, {panel}, numbered(levels)};
+}
+
+namespace {
+
+/// Six digits are more than a picture shows.
+Json six_digits(double value) {
+  if (!std::isfinite(value)) return nullptr;
+  if (value == 0.0) return 0.0;
+  const double scale = std::pow(10.0, 5.0 - std::floor(std::log10(std::abs(value))));
+  return std::isfinite(scale) && scale > 0.0 ? std::round(value * scale) / scale : value;
+}
+
+Json six_digits(const std::vector<double>& values) {
+  Json out = Json::array();
+  for (const double value : values) out.push_back(six_digits(value));
+  return out;
+}
+
+Json panel_json(const plot::Panel& panel) {
+  Json lines = Json::array(), ribbons = Json::array(), marks = Json::array();
+  for (const auto& line : panel.lines)
+    lines.push_back({{"label", line.label},
+                     {"x", six_digits(line.x)},
+                     {"y", six_digits(line.y)},
+                     {"points", line.points}});
+  for (const auto& ribbon : panel.ribbons)
+    ribbons.push_back({{"label", ribbon.label},
+                       {"x", six_digits(ribbon.x)},
+                       {"low", six_digits(ribbon.low)},
+                       {"high", six_digits(ribbon.high)}});
+  for (const double at : panel.horizontal_marks) marks.push_back({{"at", at}, {"label", ""}});
+  for (const auto& mark : panel.marks) marks.push_back({{"at", mark.at}, {"label", mark.label}});
+  return {{"title", panel.title},
+          {"x_label", panel.x_label},
+          {"y_label", panel.y_label},
+          {"group_names", panel.group_names},
+          {"lines", lines},
+          {"ribbons", ribbons},
+          {"marks", marks}};
+}
+
+}  // namespace
+
+Json figure_json(const plot::Figure& figure) {
+  Json panels = Json::array();
+  for (const auto& panel : figure.panels) panels.push_back(panel_json(panel));
+  return {{"note", figure.note}, {"panels", panels}};
 }
 
 }  // namespace assessment

@@ -159,6 +159,46 @@ statistics::Groups groups_in_order(const Table& table, const std::string& column
   return statistics::grouped(places, std::move(names), y);
 }
 
+statistics::Groups group_means(const Analysis& of, const std::string& column,
+                               const statistics::Vector& y) {
+  const Parts levels = parts_of(of.table, column);
+  const auto persons = levels_of(of.table, of.formula.group);
+  const auto who = places_of(of.table, of.formula.group, persons);
+  std::vector<double> means;
+  std::vector<std::size_t> places;
+  for (std::size_t level = 0; level < levels.names.size(); ++level) {
+    std::vector<double> sums(persons.size(), 0.0), numbers(persons.size(), 0.0);
+    for (const std::size_t row : levels.rows[level]) {
+      sums[who[row]] += y[static_cast<Eigen::Index>(row)];
+      numbers[who[row]] += 1.0;
+    }
+    for (std::size_t k = 0; k < persons.size(); ++k) {
+      if (numbers[k] == 0.0) continue;
+      means.push_back(sums[k] / numbers[k]);
+      places.push_back(level);
+    }
+  }
+  return statistics::grouped(places, levels.names,
+                             Eigen::Map<const statistics::Vector>(means.data(), std::ssize(means)));
+}
+
+std::optional<plot::Figure> predictor_picture(const Analysis& of, const Problem& problem,
+                                              const std::vector<RegressionLine>& lines) {
+  if (of.formula.terms.size() != 1 || of.formula.terms[0].variables.size() != 1) return {};
+  const Variable& variable = of.formula.terms[0].variables[0];
+  const std::string& response = of.formula.response;
+  if (variable.as == Variable::As::factor || !of.table.is_numeric(variable.column)) {
+    const bool repeated = !of.formula.group.empty();
+    return group_picture(variable.column,
+                         repeated ? group_means(of, variable.column, problem.y)
+                                  : groups_in_order(of.table, variable.column, problem.y),
+                         repeated ? response + ", mean of each " + of.formula.group : response);
+  }
+  if (problem.design().columns.cols() != 2 || !problem.design().intercept) return {};
+  return scatter_picture(problem.design().names[1], problem.design().columns.col(1), response,
+                         problem.y, lines);
+}
+
 namespace {
 
 /// Names of all combinations, the last factor fastest.

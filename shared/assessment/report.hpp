@@ -1,7 +1,10 @@
 /// What the methods share: the parts of a report, and a report as text.
 #pragma once
 
+#include <optional>
+
 #include "assessment/method.hpp"
+#include "assessment/pictures.hpp"
 #include "statistics/anova/anova.hpp"
 
 namespace tractus::assessment {
@@ -44,6 +47,11 @@ struct Problem {
 };
 core::Result<Problem> problem_of(const Analysis& of, bool grouped);
 
+/// The response against the one predictor of the formula: its groups (means of persons where the
+/// formula has (1|group)), or the points with `lines` for a number. Nothing for other formulas.
+std::optional<plot::Figure> predictor_picture(const Analysis& of, const Problem& problem,
+                                              const std::vector<RegressionLine>& lines);
+
 /// Labels of (1|group), one per row.
 std::vector<std::string> group_labels(const Analysis& of);
 
@@ -53,6 +61,10 @@ core::Result<std::string> single_column(const Analysis& of, const char* method);
 /// The response by level, in the order of levels_of().
 statistics::Groups groups_in_order(const Table& table, const std::string& column,
                                    const statistics::Vector& y);
+
+/// The mean of each label of (1|group) within each level of the column: one value per person.
+statistics::Groups group_means(const Analysis& of, const std::string& column,
+                               const statistics::Vector& y);
 
 /// Subjects by cells (combinations of the within-subject levels), every cell exactly once.
 struct Cells {

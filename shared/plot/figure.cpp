@@ -72,6 +72,13 @@ void choose_axes(const Panel& panel, double width_px, Prepared& out) {
       else if (!panel.log_y || y > 0.0)
         left.take(y);
   }
+  for (const Ribbon& ribbon : panel.ribbons) {
+    core::require(ribbon.x.size() == ribbon.low.size() && ribbon.x.size() == ribbon.high.size(),
+                  "a ribbon has as many x as ends");
+    for (const double x : ribbon.x) across.take(x);
+    for (const auto* ends : {&ribbon.low, &ribbon.high})
+      for (const double y : *ends) left.take(y);
+  }
   for (const Steps& steps : panel.steps) {
     core::require(steps.y.empty() || steps.edges.size() == steps.y.size() + 1,
                   "a staircase has one edge more than values");
@@ -206,9 +213,23 @@ std::string marks_text(const Prepared& prepared, const Frame& frame) {
   return out;
 }
 
+/// There along the high end, back along the low one.
+std::string ribbons_text(const Prepared& prepared, const Frame& frame) {
+  std::string out;
+  for (const Ribbon& ribbon : prepared.panel->ribbons) {
+    std::vector<double> x(ribbon.x), y(ribbon.high);
+    x.insert(x.end(), ribbon.x.rbegin(), ribbon.x.rend());
+    y.insert(y.end(), ribbon.low.rbegin(), ribbon.low.rend());
+    const auto path = curve(x, y, prepared.across, prepared.left, frame);
+    out +=
+        fmt::format(R"(<path d="{}Z" fill="{}" fill-opacity="0.15"/>)", path, ribbon.colour) + "\n";
+  }
+  return out;
+}
+
 std::string data_text(const Prepared& prepared, const Frame& frame) {
   const Panel& panel = *prepared.panel;
-  std::string out;
+  std::string out = ribbons_text(prepared, frame);
   for (std::size_t k = 0; k < panel.steps.size(); ++k) {
     const Steps& steps = panel.steps[k];
     const auto path =
@@ -221,8 +242,8 @@ std::string data_text(const Prepared& prepared, const Frame& frame) {
   }
   for (std::size_t k = 0; k < panel.lines.size(); ++k) {
     const Line& line = panel.lines[k];
-    const auto path = curve(line.x, line.y, prepared.across,
-                            line.right_axis ? prepared.right : prepared.left, frame);
+    const auto path = (line.points ? crosses : curve)(
+        line.x, line.y, prepared.across, line.right_axis ? prepared.right : prepared.left, frame);
     if (!path.empty())
       out +=
           fmt::format(

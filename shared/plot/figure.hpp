@@ -16,6 +16,14 @@ struct Line {
   std::string colour;        ///< "#1b4f8f"; the palette's next if empty
   double width_px = 1.2;
   bool right_axis = false;
+  bool points = false;  ///< small crosses in place of a curve; nothing is thinned
+};
+
+/// An area between two curves, for example a confidence band.
+struct Ribbon {
+  std::string label;
+  std::vector<double> x, low, high;  ///< equal length
+  std::string colour;
 };
 
 /// A histogram or any staircase: `y[k]` holds from `edges[k]` to `edges[k + 1]`.
@@ -50,6 +58,8 @@ struct Panel {
   std::vector<Mark> marks;
   bool log_y = false;  ///< left axis by decades; values ≤ 0 lie below its foot
   double height_px = 220;
+  std::vector<Ribbon> ribbons = {};           ///< behind the lines, on the left axis
+  std::vector<std::string> group_names = {};  ///< of x = 1, 2, …; the SVG writes the numbers
 };
 
 struct Figure {

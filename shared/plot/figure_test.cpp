@@ -99,6 +99,22 @@ TEST(Staircase, ClosesToTheFootWhenFilled) {
             "M0 100L0 0L100 0L100 50L200 50L200 100Z");
 }
 
+TEST(Crosses, StandAtEachPointThatIsANumber) {
+  const std::vector<double> x{1, 2}, y{0.5, std::numeric_limits<double>::quiet_NaN()};
+  const Axis across = Axis::linear({0, 4}, 4, true), up = Axis::linear({0, 1}, 2, false);
+  EXPECT_EQ(crosses(x, y, across, up, {400, 100}), "M97 50L103 50M100 47L100 53");
+}
+
+TEST(Svg, FillsARibbonThereAndBack) {
+  Panel panel;
+  panel.ribbons.push_back({"band", {0, 1}, {0, 0}, {1, 1}, "#ff0000"});
+  const std::string text = svg({"", 900, 1, {panel}, ""});
+  EXPECT_TRUE(is_balanced(text)) << text;
+  EXPECT_THAT(text,
+              testing::ContainsRegex("<path d=\"M0 0L[0-9.]+ 0L[0-9.]+ [0-9.]+L0 [0-9.]+Z\""));
+  EXPECT_THAT(text, Not(HasSubstr("no data")));
+}
+
 TEST(Words, AreEscapedAndIndicesSetLower) {
   EXPECT_THAT(written({0, 0, 10}, "a<b & \"c\"\n"),
               HasSubstr(">a&lt;b &amp; &quot;c&quot; </text>"));

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace tractus {
 namespace plot {
@@ -69,6 +70,22 @@ std::string curve(std::span<const double> x, std::span<const double> y, const Ax
       ++end;
     draw_column(x, y, k, end, across, up, frame, pen);
     k = end;
+  }
+  return std::move(pen).text();
+}
+
+std::string crosses(std::span<const double> x, std::span<const double> y, const Axis& across,
+                    const Axis& up, const Frame& frame) {
+  constexpr double kArm = 3.0;
+  Pen pen;
+  for (std::size_t k = 0; k < x.size(); ++k) {
+    const double at_x = frame.x(across, x[k]), at_y = frame.y(up, y[k]);
+    if (!std::isfinite(at_x) || !std::isfinite(at_y)) continue;
+    for (const auto& [dx, dy] : {std::pair{kArm, 0.0}, std::pair{0.0, kArm}}) {
+      pen.lift();
+      pen.to(at_x - dx, at_y - dy);
+      pen.to(at_x + dx, at_y + dy);
+    }
   }
   return std::move(pen).text();
 }

@@ -19,6 +19,10 @@ struct Frame {
 std::string curve(std::span<const double> x, std::span<const double> y, const Axis& across,
                   const Axis& up, const Frame& frame);
 
+/// A small cross at each point; none where a value is not finite.
+std::string crosses(std::span<const double> x, std::span<const double> y, const Axis& across,
+                    const Axis& up, const Frame& frame);
+
 /// A staircase's path; closed to the axis' foot (or to zero, if that is on the axis) when filled.
 std::string staircase(std::span<const double> edges, std::span<const double> y, const Axis& across,
                       const Axis& up, const Frame& frame, bool filled);

@@ -235,6 +235,50 @@ TEST_F(Stats, AnInteractionIsTestedByTheTermThatHoldsIt) {
   EXPECT_EQ(got["coefficients"].size(), 12u);  // 4 × 3 cells
 }
 
+/// Extra hours of sleep of two groups of ten (Student 1908, R's data set `sleep`), each person with
+/// two rows half an hour below and above; a third group beside them.
+TEST_F(Stats, ComparesTwoGroupsOfPersonsEachCountedOnce) {
+  const double sleep[] = {0.7, -1.6, -0.2, -1.2, -0.1, 3.4, 3.7, 0.8, 0.0, 2.0,
+                          1.9, 0.8,  1.1,  0.1,  -0.1, 4.4, 5.5, 1.6, 4.6, 3.4};
+  std::string rows = "extra,group,person\n";
+  for (int i = 0; i < 20; ++i)
+    for (const double half : {-0.5, 0.5})
+      rows += std::to_string(sleep[i] + half) + (i < 10 ? ",first,p" : ",second,p") +
+              std::to_string(i) + "\n";
+  const std::string two = file(rows).string(), formula = "extra ~ group + (1|person)";
+  const auto found = [&](const std::string& data, const std::string& more) {
+    const Ran ran = run("effect-size", data, formula, "--json " + more);
+    EXPECT_EQ(ran.exit, 0) << ran.err;
+    return *core::parse_json(ran.out, "stdout");
+  };
+  const auto got = found(two, "");
+  EXPECT_EQ(got["compared"], "second minus first");
+  // R: t.test(extra ~ group, data = sleep), as its help page prints it, with the sign of second −
+  // first: t = 1.8608, df = 17.776, p-value = 0.07939, interval -0.2054832 to 3.3654832.
+  EXPECT_NEAR(got["difference"]["difference"].get<double>(), 1.58, 1e-12);
+  EXPECT_NEAR(got["difference"]["t"].get<double>(), 1.8608, 5e-5);
+  EXPECT_NEAR(got["difference"]["df"].get<double>(), 17.776, 5e-4);
+  EXPECT_NEAR(got["difference"]["p"].get<double>(), 0.07939, 5e-6);
+  EXPECT_NEAR(got["difference"]["ci95_low"].get<double>(), -0.2054832, 5e-8);
+  EXPECT_NEAR(got["difference"]["ci95_high"].get<double>(), 3.3654832, 5e-8);
+  // g = J(18) d and the interval of d by bisecting the noncentral t, integrated over chi-square by
+  // Simpson's rule in Python; R's effectsize::hedges_g multiplies both by J as well.
+  EXPECT_NEAR(got["effect"]["hedges_g"].get<double>(), 0.79693524, 1e-7);
+  EXPECT_NEAR(got["effect"]["hedges_g_ci95_low"].get<double>(), -0.09140773, 1e-6);
+  EXPECT_NEAR(got["effect"]["hedges_g_ci95_high"].get<double>(), 1.66517179, 1e-6);
+  EXPECT_EQ(got["tests"][0]["effect"], "Hedges' g");
+
+  const std::string three = file(rows + "9,third,x\n8,third,y\n").string();
+  const auto turned = found(three, "--level first --reference second");
+  EXPECT_EQ(turned["compared"], "first minus second");
+  EXPECT_NEAR(turned["difference"]["t"].get<double>(), -1.8608, 5e-5);
+  EXPECT_THAT(refusal("effect-size", three, formula), HasSubstr("has 3 values"));
+  EXPECT_THAT(run("effect-size", three, formula, "--level first").err,
+              HasSubstr("level and reference"));
+  EXPECT_THAT(run("effect-size", three, formula, "--level first --reference nobody").err,
+              HasSubstr("has no value 'nobody'"));
+}
+
 TEST_F(Stats, RefusesByNameWhatEachMethodCannotTake) {
   const auto data = file("y,g,s,t\n1,a,p,1\n0,a,q,2\n1,b,p,3\n2,b,q,4\n").string();
   EXPECT_THAT(refusal("recognition", data, "y ~ g"), HasSubstr(":5: column 'y' should be 0 or 1"));

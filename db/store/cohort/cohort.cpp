@@ -16,11 +16,15 @@ const std::string& kTrials() {
       ", t.complete, c.kind, l.study_id, l.participant, "
       "p.level, l.position, p.experience_years, m.state, u.name, t.sha256, case when " +
       blinded_sql() +
-      " then 1 else 0 end from trials t "
+      " then 1 else 0 end, coalesce(h.name, (select k.name from cohort_people q join cohorts k on "
+      "k.id = q.cohort_id where q.account_id = a.account_id and q.part = 'trainee' order by "
+      "q.since_utc_us, k.name limit 1), '') from trials t "
       "join cases c on c.id = t.case_id join stations s on s.id = t.station_id "
       "left join study_trials m on m.trial_id = t.id left join study_slots l on l.id = m.slot_id "
       "left join assignment_people a on a.study_id = l.study_id and a.participant = l.participant "
       "left join accounts u on u.id = a.account_id "
+      "left join assignments g on g.study_id = l.study_id left join cohorts h on h.id = "
+      "g.cohort_id "
       "left join study_participants p on p.study_id = l.study_id and p.name = l.participant "
       "where ? = '' or l.study_id = ? order by t.started_utc_us, t.id limit ?";
   return sql;
@@ -36,6 +40,7 @@ core::Result<CohortTrial> trial_from(const Row& row) {
                   .study = row.text_or_null(13).value_or(""),
                   .participant = row.text_or_null(14).value_or(""),
                   .level = row.text_or_null(15).value_or(""),
+                  .cohort = row.text(22),
                   .person = row.text_or_null(19).value_or(""),
                   .experience_years = row.number_or_null(17),
                   .place = place,

@@ -17,6 +17,7 @@ struct CohortTrial {
   trial::Rig rig = trial::Rig::palpation;
   // For a trial of a study; for other trials `study` is empty:
   std::string study, participant, level;
+  std::string cohort;       ///< name; of the assignment, else the first that the person joined
   std::string person;       ///< name of the account, for an assignment; never for research
   std::int64_t number = 0;  ///< place in the participant's order, counted from 1
   std::optional<double> experience_years = {};

@@ -1,7 +1,9 @@
 #include "db/store/cohort/released.hpp"
 
 #include <algorithm>
+#include <chrono>
 
+#include "core/clock.hpp"
 #include "core/try.hpp"
 
 namespace tractus {
@@ -10,6 +12,14 @@ namespace {
 
 constexpr double kDayLength_us = 86'400e6;
 constexpr std::int64_t kMostKnown = 1'000'000;
+
+double year_of(std::int64_t utc_us) {
+  using namespace std::chrono;
+  const sys_days day = floor<days>(sys_time<microseconds>(microseconds(utc_us)));
+  const year_month_day date(day);
+  const sys_days first(date.year() / January / 1), next((date.year() + years(1)) / January / 1);
+  return int(date.year()) + double((day - first).count()) / double((next - first).count());
+}
 
 core::Result<void> check_there(Reading& tx, const std::string& study) {
   if (study.empty()) return {};
@@ -27,6 +37,9 @@ ReleasedTrial::ReleasedTrial(CohortTrial trial, Tier released, const std::string
       study(std::move(trial.study)),
       level(std::move(trial.level)),
       case_title(std::move(trial.summary.case_title)),
+      cohort(std::move(trial.cohort)),
+      date(core::utc_text(trial.summary.started_utc_us).substr(0, 10)),
+      year(year_of(trial.summary.started_utc_us)),
       rig(trial.rig),
       number(trial.number),
       experience_years(trial.experience_years),

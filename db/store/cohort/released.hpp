@@ -16,6 +16,9 @@ class ReleasedTrial {
   std::string participant;  ///< pseudonym of the person, or of the simulated hand
   std::string study;        ///< id of the study or assignment; empty: none
   std::string level, case_title;
+  std::string cohort;  ///< name of the cohort of a trainee; empty: none
+  std::string date;    ///< day of the trial in UTC, "2026-07-02"
+  double year = 0.0;   ///< the same day in years, 2026.4986
   trial::Rig rig;
   std::int64_t number = 0;  ///< of its place in the participant's order, from 1
   std::optional<double> experience_years;

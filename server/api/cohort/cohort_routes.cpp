@@ -149,8 +149,10 @@ Result<http::Response> table_of(const Call& call) {
 
 RouteInfo cohort_route(std::string method, std::string tail, std::string id, std::string summary,
                        std::string answer, Result<http::Response> (*handle)(const Call&)) {
-  return research_route(std::move(method), "cohort/" + tail, std::move(id), std::move(summary),
-                        std::move(answer), handle);
+  RouteInfo out = research_route(std::move(method), "cohort/" + tail, std::move(id),
+                                 std::move(summary), std::move(answer), handle);
+  out.who.push_back(Role::director);
+  return out;
 }
 
 std::vector<NamedSchema> plan_schemas() {

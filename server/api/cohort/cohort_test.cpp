@@ -209,9 +209,9 @@ TEST_F(Cohort, ALockedPlanRunsToAReportWithItsDataAndDictionary) {
   const auto csv = get(run + "data.csv");
   EXPECT_EQ(csv.status, 200);
   const auto dictionary = json(get(run + "dictionary.json"));
-  ASSERT_EQ(dictionary.size(), 12u);  // eleven columns and why a row is left out
-  EXPECT_EQ(dictionary[11]["name"], "excluded_because");
-  EXPECT_EQ(dictionary[10]["unit"], "N");
+  ASSERT_EQ(dictionary.size(), 16u);  // fifteen columns and why a row is left out
+  EXPECT_EQ(dictionary[15]["name"], "excluded_because");
+  EXPECT_EQ(dictionary[14]["unit"], "N");
   EXPECT_EQ(get(run + "password.txt").status, 404);
   const auto listed = json(get("plans/" + id));
   EXPECT_EQ(listed["plan"]["lock"]["data_seen"], true);
@@ -261,14 +261,17 @@ TEST_F(Cohort, APlanThatIsWrongOrLockedAlreadyIsRefused) {
 
 TEST_F(Cohort, TheTableIsOneRowPerTrialThatCounts) {
   const std::string head =
-      "trial,participant,study,number,level,experience_years,case,rig,simulated,correct,score_N\n";
+      "trial,participant,study,number,running_number,cohort,level,experience_years,date,year,case,"
+      "rig,simulated,correct,score_N\n";
   const std::string csv = table("?study=spine");
   const std::string p1 = "," + person_name("P1"), p2 = "," + person_name("P2");
   EXPECT_TRUE(csv.starts_with(head + trial_name(0) + p1 +
-                              ",spine,1,resident,2.5,L3,palpation,0,1,1\n" + trial_name(1) + p1 +
-                              ",spine,2,resident,2.5,L3,palpation,0,0,2\n"))
+                              ",spine,1,1,,resident,2.5,1970-01-01,1970.0000,L3,palpation,0,1,1\n" +
+                              trial_name(1) + p1 +
+                              ",spine,2,2,,resident,2.5,1970-01-01,1970.0000,L3,palpation,0,0,2\n"))
       << csv;
-  EXPECT_THAT(csv, HasSubstr(trial_name(4) + p2 + ",spine,1,senior,,L3,palpation,1,1,4\n"));
+  EXPECT_THAT(csv, HasSubstr(trial_name(4) + p2 +
+                             ",spine,1,1,,senior,,1970-01-01,1970.0000,L3,palpation,1,1,4\n"));
   EXPECT_EQ(std::ranges::count(csv, '\n'), 7);
   EXPECT_EQ(
       analysed(
@@ -280,7 +283,8 @@ TEST_F(Cohort, ANameWithCommasAndLineBreaksStaysOneCell) {
   const std::string csv = table();
   EXPECT_EQ(std::ranges::count(csv, '\n'), 8);
   EXPECT_THAT(csv, Not(HasSubstr("Eve")));
-  EXPECT_THAT(csv, ContainsRegex(trial_name(8) + ",P[0-9a-f]+,,,,,L3,palpation,1,1,7.5\n"));
+  EXPECT_THAT(csv, ContainsRegex(trial_name(8) +
+                                 ",P[0-9a-f]+,,,1,,,,1970-01-01,1970.0000,L3,palpation,1,1,7.5\n"));
   EXPECT_EQ(analysed({{"method", "describe"}, {"formula", "score_N ~ rig"}})["data"]["rows"], 7);
 }
 

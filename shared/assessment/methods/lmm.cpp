@@ -1,10 +1,13 @@
 /// Linear mixed model with a random intercept.
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "assessment/pictures.hpp"
 #include "assessment/report.hpp"
 #include "assessment/terms.hpp"
 #include "core/try.hpp"
+#include "statistics/distributions/distributions.hpp"
 #include "statistics/mixed/lmm_tests.hpp"
 
 namespace tractus {
@@ -50,6 +53,13 @@ void add_tests(const Analysis& of, const ModelMatrix& model, const statistics::L
       out);
 }
 
+/// Of the 95 % interval of intercept + slope · x, by t on Satterthwaite's degrees of freedom.
+double half_width(const statistics::Lmm& fit, double x) {
+  const Vector contrast = Eigen::Vector2d(1.0, x);
+  return statistics::student_t_quantile(0.975, statistics::satterthwaite_df(fit, contrast)) *
+         std::sqrt(contrast.dot(fit.covariance * contrast));
+}
+
 core::Result<Findings> run_lmm(const Analysis& of) {
   if (of.formula.group.empty())
     return core::bad_input("lmm needs a random intercept: add (1|COLUMN) to the formula");
@@ -77,7 +87,14 @@ core::Result<Findings> run_lmm(const Analysis& of) {
   if (fit->groups.size() < 6)
     out["notes"].push_back(
         fmt::format("{} groups say little about the spread between groups", fit->groups.size()));
-  return Findings{std::move(out), {residual_picture(fitted, residuals)}};
+  Findings found{std::move(out), {}};
+  std::vector<RegressionLine> lines;
+  if (fit->coefficients.size() == 2)
+    lines.push_back({"fixed effects", fit->coefficients[0], fit->coefficients[1],
+                     [&](double x) { return half_width(*fit, x); }});
+  if (auto figure = predictor_picture(of, problem, lines)) found.figures.push_back(*figure);
+  found.figures.push_back(residual_picture(fitted, residuals));
+  return found;
 }
 
 }  // namespace

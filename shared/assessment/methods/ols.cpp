@@ -83,10 +83,11 @@ core::Result<Findings> run_ols(const Analysis& of) {
                   {"BIC", fit->bic}};
   add_notes_and_checks(problem, *fit, out);
   Findings found{std::move(out), {}};
-  if (fit->coefficients.size() == 2 && problem.design().intercept)
-    found.figures.push_back(scatter_picture(
-        fit->names[1], problem.design().columns.col(1), of.formula.response, problem.y,
-        {{"least squares", fit->coefficients[0], fit->coefficients[1]}}));
+  std::vector<RegressionLine> lines;
+  if (fit->coefficients.size() == 2)
+    lines.push_back({"least squares", fit->coefficients[0], fit->coefficients[1],
+                     band_of(fitted.covariance, fit->df_residual)});
+  if (auto figure = predictor_picture(of, problem, lines)) found.figures.push_back(*figure);
   found.figures.push_back(residual_picture(problem.y - fit->residuals, fit->residuals));
   return found;
 }

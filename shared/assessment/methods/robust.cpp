@@ -63,11 +63,12 @@ core::Result<Findings> run_robust(const Analysis& of) {
         fmt::format("row {} has leverage {:.3f}: robust in y, this fit does not protect against it",
                     most + 1, leverage));
   Findings found{std::move(out), {}};
-  if (fit->coefficients.size() == 2 && problem.design().intercept)
-    found.figures.push_back(scatter_picture(
-        fit->names[1], problem.design().columns.col(1), of.formula.response, problem.y,
-        {{"bisquare", fit->coefficients[0], fit->coefficients[1]},
-         {"least squares", fit->ols_coefficients[0], fit->ols_coefficients[1]}}));
+  std::vector<RegressionLine> lines;
+  if (fit->coefficients.size() == 2)
+    lines = {{"bisquare", fit->coefficients[0], fit->coefficients[1],
+              band_of(fit->covariance, fit->df_residual)},
+             {"least squares", fit->ols_coefficients[0], fit->ols_coefficients[1]}};
+  if (auto figure = predictor_picture(of, problem, lines)) found.figures.push_back(*figure);
   found.figures.push_back(
       residual_picture(problem.design().columns * fit->coefficients, fit->residuals));
   return found;

@@ -15,7 +15,6 @@ Matrix adjusted_covariance(const Lmm& fit) {
 }
 
 JointTest satterthwaite(const Lmm& fit, const std::vector<Eigen::Index>& columns) {
-  const auto& bend = fit.curvature;
   const Vector b = fit.coefficients(columns);
   // Directions are those of the covariance as it stands, so that a contrast's unit counts as in the
   // source.
@@ -26,11 +25,9 @@ JointTest satterthwaite(const Lmm& fit, const std::vector<Eigen::Index>& columns
     const Vector direction = eigen.eigenvectors().col(m);
     const double d = eigen.eigenvalues()[m];
     squares += std::pow(direction.dot(b), 2) / d;
-    Eigen::Vector2d g;
-    for (std::size_t a = 0; a < 2; ++a)
-      g[static_cast<Eigen::Index>(a)] =
-          direction.dot(Matrix(bend.covariance_slope[a](columns, columns)) * direction);
-    const double nu = 2.0 * d * d / g.dot(bend.variance_covariance * g);
+    Vector contrast = Vector::Zero(fit.coefficients.size());
+    contrast(columns) = direction;
+    const double nu = satterthwaite_df(fit, contrast);
     if (columns.size() == 1) return {squares, 1.0, nu, f_upper(squares, 1.0, nu)};
     if (nu > 2.0) expectation += nu / (nu - 2.0);
   }
@@ -87,6 +84,16 @@ JointTest kenward_roger_of(const Lmm& fit, const Matrix& adjusted,
 }
 
 }  // namespace
+
+double satterthwaite_df(const Lmm& fit, const Vector& contrast) {
+  if (fit.tau_squared == 0.0) return fit.df[0];
+  const double variance = contrast.dot(fit.covariance * contrast);
+  Eigen::Vector2d gradient;
+  for (std::size_t a = 0; a < 2; ++a)
+    gradient[static_cast<Eigen::Index>(a)] =
+        contrast.dot(fit.curvature.covariance_slope[a] * contrast);
+  return 2.0 * variance * variance / gradient.dot(fit.curvature.variance_covariance * gradient);
+}
 
 JointTest joint_test(const Lmm& fit, const std::vector<Eigen::Index>& columns, SmallSample how) {
   core::require(!columns.empty(), "a joint test is of one coefficient or more");

@@ -26,6 +26,10 @@ enum class SmallSample { satterthwaite, kenward_roger };
 /// @param columns  which, at least one.
 JointTest joint_test(const Lmm& fit, const std::vector<Eigen::Index>& columns, SmallSample how);
 
+/// Satterthwaite's degrees of freedom of a contrast lᵀβ; n − p where τ² = 0.
+/// @param contrast  l, one entry per coefficient.
+double satterthwaite_df(const Lmm& fit, const Vector& contrast);
+
 /// Each coefficient after Kenward & Roger: standard errors from Φ_A.
 struct KenwardRoger {
   Matrix covariance;  ///< Φ_A

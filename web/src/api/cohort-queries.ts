@@ -57,6 +57,24 @@ const testSchema = v.looseObject({
   df2: v.optional(v.nullable(finite)),
 });
 
+const numbers = v.array(v.nullable(finite));
+/** A figure as data: panels of points, curves and bands. */
+const figureSchema = v.object({
+  note: v.string(),
+  panels: v.array(
+    v.object({
+      title: v.string(),
+      x_label: v.string(),
+      y_label: v.string(),
+      /** Of x = 1, 2, …; none: x is a number. */
+      group_names: v.array(v.string()),
+      lines: v.array(v.object({ label: v.string(), x: numbers, y: numbers, points: v.boolean() })),
+      ribbons: v.array(v.object({ label: v.string(), x: numbers, low: numbers, high: numbers })),
+      marks: v.array(v.object({ at: finite, label: v.string() })),
+    }),
+  ),
+});
+
 export const analysisResultSchema = v.object({
   plan: v.looseObject({ title: v.string(), question: v.string(), endpoint: v.string() }),
   data: v.looseObject({
@@ -75,6 +93,7 @@ export const analysisResultSchema = v.object({
       formula: v.optional(v.string(), ''),
       where: v.optional(v.string(), ''),
       report: v.nullish(row, null),
+      figures: v.optional(v.array(figureSchema), []),
       error: v.nullish(v.string(), null),
     }),
   ),
@@ -92,6 +111,8 @@ export const analysisResultSchema = v.object({
   methods: v.array(v.string()),
   results: v.array(v.string()),
 });
+
+export const readAnalysisResult = (json: unknown) => v.parse(analysisResultSchema, json);
 
 export const analysisSchema = v.object({
   ...runFields,
@@ -142,10 +163,20 @@ export const runPlan = (plan: string, snapshot?: string) =>
     method: 'POST',
     body: { plan, ...(snapshot === undefined ? {} : { snapshot }) },
   });
-export const runMethod = (method: string, formula: string, study: string) =>
+export const runMethod = (
+  method: string,
+  formula: string,
+  study: string,
+  options: Readonly<Record<string, string>> = {},
+) =>
   requestJson(address('/api/v1/cohort/analyses', {}), analysisRunSchema, {
     method: 'POST',
-    body: { method, formula, ...(study === '' ? {} : { study }) },
+    body: {
+      method,
+      formula,
+      ...(study === '' ? {} : { study }),
+      ...(Object.keys(options).length === 0 ? {} : { options }),
+    },
   });
 export const analysisFile = (id: string, part: 'report.html' | 'result.json' | 'data.csv' | 'dictionary.json') =>
   `/api/v1${address('/api/v1/cohort/analyses/{id}/{part}', { id, part })}`;
@@ -155,3 +186,4 @@ export type LockedPlan = v.InferOutput<typeof lockedPlanSchema>;
 export type AnalysisRun = v.InferOutput<typeof analysisRunSchema>;
 export type AnalysisResult = v.InferOutput<typeof analysisResultSchema>;
 export type PlannedTest = v.InferOutput<typeof testSchema>;
+export type AnalysisFigure = v.InferOutput<typeof figureSchema>;

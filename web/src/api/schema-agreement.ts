@@ -32,7 +32,7 @@ import type {
 } from './network-schemas';
 import type { stationPageSchema, stationStateSchema } from './live-schemas';
 import type { offerSchema } from './oidc-queries';
-import type { metricsSchema, traineeListSchema } from './trainee-queries';
+import type { cohortProgressSchema, metricsSchema, traineeListSchema } from './trainee-queries';
 import type { studyEventsSchema, studyListSchema, studySchema } from './study-schemas';
 import type {
   forceDepthSchema,
@@ -71,6 +71,7 @@ export interface Agreed {
   readonly audit: Takes<typeof auditSchema, Served['AuditRows']>;
   readonly auditCheck: Takes<typeof auditCheckSchema, Served['AuditCheck']>;
   readonly trainees: Takes<typeof traineeListSchema, Served['TraineeList']>;
+  readonly cohortProgress: Takes<typeof cohortProgressSchema, Served['CohortProgressList']>;
   readonly sentModel: Takes<typeof sentModelSchema, Served['SentModel']>;
   readonly backups: Takes<typeof backupListSchema, Served['Backups']>;
   readonly studyEvents: Takes<typeof studyEventsSchema, Served['StudyEvents']>;
@@ -113,6 +114,7 @@ export const kAgreed: Agreed = {
   audit: true,
   auditCheck: true,
   trainees: true,
+  cohortProgress: true,
   sentModel: true,
   backups: true,
   newAccount: true,

@@ -100,9 +100,53 @@ export const traineeQuery = (name: string) =>
       requestJson(address('/api/v1/cohort/trainees/{name}', { name }), traineeSchema, { signal }),
   });
 
+/** Recognition of whole cohorts by running trial number, and each trainee beside the others. */
+export const cohortProgressSchema = v.object({
+  cohorts: v.array(
+    v.object({
+      id: v.string(),
+      name: v.string(),
+      bins: v.array(
+        v.object({
+          from: count,
+          to: count,
+          trainees: count,
+          share: portion,
+          low: v.nullable(portion),
+          high: v.nullable(portion),
+        }),
+      ),
+      trainees: v.array(
+        v.object({
+          trainee: v.string(),
+          trials: count,
+          recent_trials: count,
+          recent_right: count,
+          others_share: v.nullable(portion),
+          behind: v.boolean(),
+          last_utc_us: v.nullable(inUtc),
+        }),
+      ),
+    }),
+  ),
+});
+
+export const cohortProgressQuery = queryOptions({
+  queryKey: ['cohort', 'progress'],
+  queryFn: ({ signal }) => requestJson(address('/api/v1/cohort/progress', {}), cohortProgressSchema, { signal }),
+});
+
 export const metricsSchema = v.object({
   metrics: v.array(
-    v.object({ id: v.string(), label: v.string(), unit: v.string(), definition: v.string(), source: v.string() }),
+    v.object({
+      id: v.string(),
+      label: v.string(),
+      unit: v.string(),
+      definition: v.string(),
+      source: v.string(),
+      /** null: trials of both rigs have it. */
+      rig: v.nullable(v.picklist(['palpation', 'probing'])),
+    }),
   ),
 });
 
@@ -117,3 +161,5 @@ export type Trainee = v.InferOutput<typeof traineeSchema>;
 export type Attempt = Trainee['attempts'][number];
 export type CalibrationBin = Trainee['calibration'][number];
 export type MetricFacts = v.InferOutput<typeof metricsSchema>['metrics'][number];
+export type CohortProgress = v.InferOutput<typeof cohortProgressSchema>['cohorts'][number];
+export type TraineePace = CohortProgress['trainees'][number];

@@ -58,6 +58,15 @@ async function analysis(page: Page, check: Check): Promise<void> {
   await page.goto('/analysis');
   await page.getByLabel('Formula (editable)').waitFor();
   await check('analysis');
+  // Two cohorts beside one another in three clicks, where there are two.
+  if ((await page.getByLabel('Compared with').count()) > 0) {
+    await page.getByLabel('Cohort', { exact: true }).selectOption({ index: 1 });
+    await page.getByLabel('Compared with').selectOption({ index: 0 });
+    await page.getByRole('button', { name: 'Compare', exact: true }).click();
+    await page.locator('[data-part="figures"] svg').first().waitFor();
+    await check('analysis-compared');
+    await page.goto('/analysis');
+  }
   await page.getByRole('link', { name: 'New plan' }).click();
   await page.getByLabel('Title').fill('Does experience shorten the operation?');
   await page.getByLabel('Endpoint').first().selectOption('operation_time');
@@ -83,6 +92,13 @@ async function programme(page: Page, check: Check): Promise<void> {
   await page.getByRole('heading', { name: 'Competence' }).waitFor();
   await page.waitForLoadState('networkidle');
   await check('trainee');
+  await page.goto('/cohorts');
+  await page
+    .getByRole('img', { name: /^Share of correct answers by running/ })
+    .or(page.getByText(/There are no cohorts yet|No trainee has five/))
+    .first()
+    .waitFor();
+  await check('cohorts');
   for (const place of ['people', 'cohorts', 'stations', 'backups', 'audit']) {
     await page.goto(`/network/${place}`);
     await page.locator('tbody tr').or(page.getByText('No backups yet.')).first().waitFor();

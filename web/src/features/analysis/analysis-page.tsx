@@ -7,12 +7,15 @@ import {
   metricsQuery,
   plansQuery,
   runMethod,
+  sessionQuery,
   studiesQuery,
   type PlanSummary,
 } from '@/api';
 import { Badge, Card, DataTable, Facts, Notice, Select, Skeleton, useTitle } from '@/ui';
 import { formatCount, formatDateTime } from '@/units';
 import styles from './analysis.module.css';
+import { CompareForm, type Comparison } from './compare-form';
+import type { Question } from './plan-draft';
 import { QuestionForm } from './question-form';
 
 /** The trial data, a quick analysis of them, and the locked plans. */
@@ -20,12 +23,19 @@ export function AnalysisPage() {
   useTitle('Analysis');
   const [, go] = useLocation();
   const [study, setStudy] = useState('');
-  const studies = useQuery(studiesQuery).data?.studies ?? [];
+  const role = useQuery({ ...sessionQuery, enabled: false }).data?.role;
+  // Studies are for researchers: a director analyses all scored trials.
+  const studies = useQuery({ ...studiesQuery, enabled: role !== undefined && role !== 'director' }).data?.studies ?? [];
   const table = useQuery(cohortTableQuery(study)),
     metrics = useQuery(metricsQuery).data?.metrics ?? [];
   const plans = useQuery(plansQuery);
   const started = useMutation({
-    mutationFn: ({ method, formula }: { method: string; formula: string }) => runMethod(method, formula, study),
+    mutationFn: ({
+      method,
+      formula,
+      options,
+    }: Pick<Question, 'method' | 'formula'> & Partial<Pick<Comparison, 'options'>>) =>
+      runMethod(method, formula, study, options),
     onSuccess: ({ id }) => go(`/analysis/runs/${id}`),
   });
   const rows = table.data?.rows ?? [],
@@ -91,6 +101,21 @@ export function AnalysisPage() {
               ]}
             />
           )}
+        </div>
+      </Card>
+      <Card title="Compare cohorts" aside={<Badge>exploratory</Badge>}>
+        <div className={styles.holdsCompare}>
+          {table.data ? (
+            <CompareForm
+              key={study}
+              table={table.data}
+              metrics={metrics}
+              busy={started.isPending}
+              onCompare={(asked) => started.mutate(asked)}
+            />
+          ) : table.isPending ? (
+            <Skeleton height="120px" />
+          ) : null}
         </div>
       </Card>
       <Card title="Quick analysis" aside={<Badge>exploratory</Badge>}>

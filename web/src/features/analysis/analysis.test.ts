@@ -1,7 +1,20 @@
 import { describe, expect, it } from 'vitest';
 import type { MetricFacts } from '@/api';
 import { tableOf } from '@/api/cohort-table';
-import { columnName, defaultPredictor, endpointsFor, endpointsOf, predictorsFor, startFor } from './columns';
+import {
+  axisName,
+  cohortsOf,
+  columnName,
+  defaultEndpoint,
+  defaultPredictor,
+  endpointsFor,
+  endpointsOf,
+  predictorsFor,
+  sizeOf,
+  startFor,
+} from './columns';
+import { comparison } from './compare-form';
+import { groupTicks, spanOf } from './figure-axes';
 import { kMethods } from './methods';
 import { kBlankPlan, planOf } from './plan-draft';
 import { cell } from './report-view';
@@ -33,22 +46,43 @@ describe('the cohort’s table', () => {
 });
 
 describe('the columns', () => {
-  const metric = (id: string, label: string): MetricFacts => ({ id, label, unit: 's', definition: '', source: '' });
+  const metric = (id: string, label: string, rig: MetricFacts['rig']): MetricFacts => ({
+    id,
+    label,
+    unit: 's',
+    definition: '',
+    source: '',
+    rig,
+  });
   const table = tableOf(
     'trial,level,number,correct,answer_right,operation_time\na,novice,1,1,1,20\nb,,2,0,0,30\nc,senior,3,1,1,40\n',
   );
 
-  it('have the id in the name where two metrics share a label', () => {
+  it('are named with unit and rig, and with the id where that is not enough', () => {
     const metrics = [
-      metric('operation_time', 'Operation time'),
-      metric('probing_time', 'Operation time'),
-      metric('path', 'Path'),
+      metric('operation_time', 'Operation time', 'palpation'),
+      metric('probing_time', 'Operation time', 'probing'),
+      metric('path', 'Path', null),
+      metric('way', 'Path', null),
     ];
-    expect(['operation_time', 'probing_time', 'path'].map((name) => columnName(name, metrics))).toEqual([
-      'Operation time (operation_time)',
-      'Operation time (probing_time)',
-      'Path',
+    const names = ['operation_time', 'probing_time', 'path', 'way', 'running_number', 'cohort'];
+    expect(names.map((name) => columnName(name, metrics))).toEqual([
+      'Operation time, s (palpation)',
+      'Operation time, s (probing)',
+      'Path, s [path]',
+      'Path, s [way]',
+      'Running trial number',
+      'Cohort',
     ]);
+    expect(new Set(names.map((name) => columnName(name, metrics))).size).toBe(names.length);
+  });
+
+  it('name an axis by the column that it begins with', () => {
+    const metrics = [metric('operation_time', 'Operation time', 'palpation')];
+    expect(axisName('operation_time, mean of each participant', metrics)).toBe(
+      'Operation time, s (palpation), mean of each participant',
+    );
+    expect(axisName('standard normal quantile', metrics)).toBe('standard normal quantile');
   });
 
   it('list the correctness of the answer once among the endpoints', () => {
@@ -73,12 +107,59 @@ describe('the start of a method', () => {
     expect(endpointsFor(table, 'logistic').map(({ name }) => name)).toEqual(['correct']);
   });
 
+  it('begins with the measure that most trials have, and with right and wrong where there is no other', () => {
+    const part = tableOf('trial,correct,path,time\na,1,0.2,\nb,0,,20\nc,1,,30\n');
+    expect(defaultEndpoint(part)).toBe('time');
+    expect(defaultEndpoint(tableOf('trial,level,correct\na,x,1\nb,y,0\n'))).toBe('correct');
+    expect(defaultEndpoint(tableOf('trial,level\na,x\n'))).toBe('');
+  });
+
   it('keeps what was chosen where there are rows, and else takes what has most', () => {
     expect(startFor(table, 'anova', 'time', 'level')).toEqual(['time', 'level']);
     expect(startFor(table, 'anova', 'path', 'level')).toEqual(['path', 'rig']);
     expect(startFor(table, 'anova', 'time', 'number')).toEqual(['time', 'rig']);
     expect(startFor(table, 'logistic', 'time', 'level')).toEqual(['correct', 'level']);
   });
+});
+
+describe('a comparison of cohorts', () => {
+  const table = tableOf(
+    'trial,participant,cohort,running_number,year,date,correct\na,P1,Residents,1,2026.1,2026-02-06,1\nb,P1,Residents,2,2026.2,2026-03-15,0\nc,P2,Fellows,1,2026.1,2026-02-06,\nd,P3,,1,2026.3,2026-04-20,1\n',
+  );
+
+  it('knows the cohorts, and who of them has the endpoint', () => {
+    expect(cohortsOf(table)).toEqual(['Fellows', 'Residents']);
+    expect(sizeOf(table, 'Residents', 'correct')).toEqual({ persons: 1, trials: 2 });
+    expect(sizeOf(table, 'Fellows', 'correct')).toEqual({ persons: 0, trials: 0 });
+  });
+
+  it('counts each person once and names both cohorts', () => {
+    expect(comparison('correct', 'Fellows', 'Residents')).toEqual({
+      method: 'effect-size',
+      formula: 'correct ~ cohort + (1|participant)',
+      options: { level: 'Fellows', reference: 'Residents' },
+    });
+  });
+
+  it('has cohort, running number and calendar date as predictors, and none of them as an endpoint', () => {
+    expect(predictorsFor(table, 'lmm').map(({ name }) => name)).toEqual(['cohort', 'running_number', 'year']);
+    expect(predictorsFor(table, 'anova').map(({ name }) => name)).toEqual(['cohort']);
+    expect(endpointsOf(table).map(({ name }) => name)).toEqual(['correct']);
+  });
+});
+
+it('the axis of a figure holds all numbers and a margin, gaps left out', () => {
+  expect(spanOf([[1, null, 3], [2]], 0.5)).toEqual({ from: 0, to: 4 });
+  expect(spanOf([[null]], 0.5)).toEqual({ from: 0, to: 1 });
+});
+
+it('groups are named on the axis where the names have room, else numbered', () => {
+  expect(groupTicks(['Fellows', 'Residents'])).toEqual([
+    { at: 1, text: 'Fellows' },
+    { at: 2, text: 'Residents' },
+  ]);
+  const long = 'a cohort with a name that takes a third of the axis';
+  expect(groupTicks([long, 'Residents']).map(({ text }) => text)).toEqual(['1', '2']);
 });
 
 describe('a plan', () => {

@@ -4,26 +4,46 @@ import type { CohortTable, MetricFacts } from '@/api';
 const kNames: Record<string, string | undefined> = {
   correct: 'Correct answer',
   experience_years: 'Years of experience',
+  cohort: 'Cohort',
   level: 'Level of training',
-  number: 'Trial number',
+  number: 'Trial number in the study',
+  running_number: 'Running trial number',
+  year: 'Calendar date, years',
   case: 'Scenario or case',
   participant: 'Participant',
   study: 'Study',
   rig: 'Rig',
 };
-const kNoEndpoints: readonly string[] = ['number', 'experience_years', 'simulated'];
-const kPredictors: readonly string[] = ['experience_years', 'level', 'number', 'case', 'rig'];
+const kNoEndpoints: readonly string[] = ['number', 'running_number', 'year', 'experience_years', 'simulated'];
+const kPredictors: readonly string[] = [
+  'cohort',
+  'level',
+  'running_number',
+  'year',
+  'experience_years',
+  'number',
+  'case',
+  'rig',
+];
 
 type Column = CohortTable['columns'][number];
 
-const plainName = (name: string, metrics: readonly MetricFacts[]) =>
-  kNames[name] ?? metrics.find(({ id }) => id === name)?.label ?? name.replaceAll('_', ' ');
-
-/** Metrics of the two rigs may have the same label: then the id follows in brackets. */
-export function columnName(name: string, metrics: readonly MetricFacts[]): string {
-  const label = plainName(name, metrics);
-  return metrics.filter((metric) => metric.label === label).length > 1 ? `${label} (${name})` : label;
+/** "Operation time, s (palpation)": label, unit, and the rig whose trials alone have the metric. */
+function metricName({ label, unit, rig }: MetricFacts): string {
+  return [label, unit === '1' || unit === '' ? '' : `, ${unit}`, rig === null ? '' : ` (${rig})`].join('');
 }
+
+/** What a column is called; the id follows where two metrics would have the same name. */
+export function columnName(name: string, metrics: readonly MetricFacts[]): string {
+  const metric = metrics.find(({ id }) => id === name);
+  if (kNames[name] !== undefined || !metric) return kNames[name] ?? name.replaceAll('_', ' ');
+  const shown = metricName(metric);
+  return metrics.filter((other) => metricName(other) === shown).length > 1 ? `${shown} [${name}]` : shown;
+}
+
+/** The name of an axis, which begins with that of a column. */
+export const axisName = (label: string, metrics: readonly MetricFacts[]) =>
+  label.replace(/^\w+/, (name) => columnName(name, metrics));
 
 /** Columns of numbers. The metric answer_right is left out where the column "correct" has the same values. */
 export function endpointsOf({ columns }: CohortTable): Column[] {
@@ -37,7 +57,7 @@ export const predictorsOf = ({ columns }: CohortTable): Column[] =>
   columns.filter(({ name, levels }) => kPredictors.includes(name) && levels.length > 1);
 
 /** Methods that compare groups, and the method whose endpoint is a yes or no. */
-const kGroupMethods: readonly string[] = ['anova', 'rm-anova', 'rank', 'permutation'];
+const kGroupMethods: readonly string[] = ['anova', 'rm-anova', 'rank', 'permutation', 'effect-size'];
 const kYesNoMethod = 'logistic';
 
 const isFilled = (row: CohortTable['rows'][number], name: string) => (row[name] ?? '') !== '';
@@ -51,6 +71,17 @@ export const endpointsFor = (table: CohortTable, method: string): Column[] =>
   endpointsOf(table).filter(
     ({ name }) => method !== kYesNoMethod || table.rows.every((row) => ['', '0', '1'].includes(row[name] ?? '')),
   );
+
+/** The endpoint to begin with: the measure, else yes or no, that most rows have. */
+export function defaultEndpoint(table: CohortTable): string {
+  const all = endpointsOf(table),
+    answers = endpointsFor(table, kYesNoMethod).map(({ name }) => name),
+    measures = all.filter(({ name }) => !answers.includes(name));
+  return (measures.length > 0 ? measures : all).reduce(
+    (best, { name }) => (best === '' || rowsWith(table, name) > rowsWith(table, best) ? name : best),
+    '',
+  );
+}
 
 /** The predictors that a method can use: groups where it compares groups. */
 export const predictorsFor = (table: CohortTable, method: string): Column[] =>
@@ -70,4 +101,14 @@ export function startFor(table: CohortTable, method: string, endpoint: string, b
 export function defaultPredictor(table: CohortTable, endpoint: string, among = predictorsOf(table)): string {
   const rows = (name: string) => rowsWith(table, endpoint, name);
   return among.reduce((best, { name }) => (best === '1' || rows(name) > rows(best) ? name : best), '1');
+}
+
+/** The cohorts in the table, by name. */
+export const cohortsOf = ({ columns }: CohortTable): string[] =>
+  [...(columns.find(({ name }) => name === 'cohort')?.levels ?? [])].sort((a, b) => a.localeCompare(b));
+
+/** Persons and trials of a cohort that have the endpoint. */
+export function sizeOf({ rows }: CohortTable, cohort: string, endpoint: string): { persons: number; trials: number } {
+  const own = rows.filter((row) => row.cohort === cohort && isFilled(row, endpoint));
+  return { persons: new Set(own.map(({ participant }) => participant)).size, trials: own.length };
 }

@@ -10,7 +10,7 @@ const PlanPage = lazy(() => index().then(({ PlanPage: page }) => ({ default: pag
 const RunPage = lazy(() => index().then(({ RunPage: page }) => ({ default: page })));
 
 export const feature: Feature = {
-  menu: [{ to: '/analysis', name: 'Analysis', roles: ['admin', 'researcher'], order: 90 }],
+  menu: [{ to: '/analysis', name: 'Analysis', roles: ['admin', 'director', 'researcher'], order: 90 }],
   pages: [
     { path: '/analysis', show: () => <AnalysisPage /> },
     { path: '/analysis/example', show: () => <ExamplePage /> },

@@ -55,6 +55,14 @@ export const kMethods: readonly Method[] = [
     people: false,
   },
   {
+    id: 'effect-size',
+    name: 'Difference of two groups',
+    description:
+      'Two groups of persons, each counted once by the mean of their trials: difference, Hedges’ g, interval.',
+    formula: repeated,
+    people: true,
+  },
+  {
     id: 'rank',
     name: 'Rank tests',
     description: 'Tests whether two variables rise together, or whether groups differ in rank.',

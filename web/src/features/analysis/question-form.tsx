@@ -3,7 +3,15 @@ import type { CohortTable, MetricFacts } from '@/api';
 import { Button, Field, Select } from '@/ui';
 import { formatCount } from '@/units';
 import styles from './analysis.module.css';
-import { columnName, defaultPredictor, endpointsFor, endpointsOf, predictorsFor, rowsWith, startFor } from './columns';
+import {
+  columnName,
+  defaultEndpoint,
+  defaultPredictor,
+  endpointsFor,
+  predictorsFor,
+  rowsWith,
+  startFor,
+} from './columns';
 import { kMethods, type Method } from './methods';
 import type { Question } from './plan-draft';
 
@@ -30,10 +38,7 @@ export function QuestionForm({ table, metrics, action, busy, planned = false, on
   const [methodId, setMethod] = useState('lmm');
   const endpoints = endpointsFor(table, methodId);
   const predictors = predictorsFor(table, methodId);
-  const [endpoint, setEndpoint] = useState(() => {
-    const all = endpointsOf(table);
-    return all.find(({ name }) => name === 'operation_time')?.name ?? all[0]?.name ?? '';
-  });
+  const [endpoint, setEndpoint] = useState(() => defaultEndpoint(table));
   const [by, setBy] = useState(() => defaultPredictor(table, endpoint));
   const [own, setOwn] = useState<string | null>(null);
   const [primary, setPrimary] = useState(true);

@@ -27,6 +27,14 @@ const kHeadings: Record<string, string | undefined> = {
   mean: 'Mean',
   sd: 'SD',
   n: 'n',
+  hedges_g: 'Hedges’ g',
+  hedges_g_ci95_low: '95 % from',
+  hedges_g_ci95_high: 'to',
+  cohen_d: 'Cohen’s d',
+  cohen_d_ci95_low: '95 % from',
+  cohen_d_ci95_high: 'to',
+  glass_delta: 'Glass’ Δ',
+  cliff_delta: 'Cliff’s δ',
 };
 const heading = (key: string) => kHeadings[key] ?? (key.charAt(0).toUpperCase() + key.slice(1)).replaceAll('_', ' ');
 

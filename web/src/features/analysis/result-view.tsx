@@ -1,8 +1,10 @@
-import type { AnalysisResult, PlannedTest } from '@/api';
+import { useQuery } from '@tanstack/react-query';
+import { metricsQuery, type AnalysisResult, type PlannedTest } from '@/api';
 import { Plane } from '@/charts';
 import { Badge, Card, Notice, Table, Term } from '@/ui';
 import { formatCount, formatFigure } from '@/units';
 import styles from './analysis.module.css';
+import { FigureView } from './figure-view';
 import { cell, ReportView } from './report-view';
 
 const kAdjusted =
@@ -173,6 +175,7 @@ function titleOf(one: AnalysisResult['analyses'][number], all: AnalysisResult['a
 
 /** The result of an analysis: summary sentences, then tests, then each report. */
 export function ResultView({ result }: { readonly result: AnalysisResult }) {
+  const metrics = useQuery(metricsQuery).data?.metrics ?? [];
   return (
     <>
       <Card
@@ -216,7 +219,10 @@ export function ResultView({ result }: { readonly result: AnalysisResult }) {
               {one.error}
             </Notice>
           ) : one.report ? (
-            <ReportView report={one.report} />
+            <div className={styles.stack}>
+              {one.figures.length > 0 ? <FigureView figures={one.figures} metrics={metrics} /> : null}
+              <ReportView report={one.report} />
+            </div>
           ) : null}
         </Card>
       ))}

@@ -1,6 +1,6 @@
 import { useQuery } from '@tanstack/react-query';
 import { Link } from 'wouter';
-import { analysisFile, analysisQuery, type AnalysisResult } from '@/api';
+import { analysisFile, analysisQuery, readAnalysisResult } from '@/api';
 import { Badge, Card, Notice, Progress, Skeleton, useTitle } from '@/ui';
 import { formatDateTime } from '@/units';
 import styles from './analysis.module.css';
@@ -83,6 +83,8 @@ export function RunPage({ id }: { readonly id: string }) {
   );
 }
 
+const kPublished = readAnalysisResult(published);
+
 /** The published probing study's tables, recomputed: what an analysis looks like when it is done. */
 export function ExamplePage() {
   useTitle('Published tables');
@@ -98,7 +100,7 @@ export function ExamplePage() {
           Tractus: published values, recomputed values, and the results of a more suitable analysis.
         </p>
       </div>
-      <ResultView result={published as unknown as AnalysisResult} />
+      <ResultView result={kPublished} />
     </div>
   );
 }

@@ -27,6 +27,13 @@ export function Walls({ found }: { readonly found: PlannedTract }) {
         across={{ title: 'depth along the tract, mm', from: 0, to: Math.max(length_mm, 1) }}
         up={{ title: 'wall thickness, mm', from: 0, to: top }}
         height_px={230}
+        data={{
+          name: 'wall thickness',
+          columns: ['wall', 'depth_m', 'thickness_m'],
+          rows: sides.flatMap(({ wall, depth_m, thickness_m }) =>
+            depth_m.map((at, i) => [wall, at, thickness_m[i] ?? null]),
+          ),
+        }}
         summary={`Thickness of the walls along the tract. ${finding} The table lists the thinnest point of each wall.`}
       >
         {(places) => (

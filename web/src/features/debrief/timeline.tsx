@@ -47,6 +47,7 @@ function useScrub(player: Player) {
     },
     handlers: {
       onPointerDown: (event: PointerEvent<HTMLDivElement>) => {
+        if (event.target instanceof Element && event.target.closest('button')) return; // a file of the chart
         held.current = true;
         event.currentTarget.setPointerCapture(event.pointerId);
         go(event);
@@ -102,6 +103,11 @@ function Line(
         across={{ title: 'time, s', from: 0, to: Math.max(duration_s, 0.1) }}
         up={{ title, from: least, to: end }}
         height_px={170}
+        data={{
+          name: title,
+          columns: ['t_s', column],
+          rows: way.t_s.map((t, i) => [t, way[column][i] ?? null]),
+        }}
         summary={`${title} over the trial${ghost ? ', with the curve of the example' : ''}.`}
       >
         {(places) => {

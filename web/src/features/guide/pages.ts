@@ -128,6 +128,16 @@ export const kPages: readonly GuidePage[] = [
         text: 'One page shows the summary, learning, competence, recognition by scenario, and confidence.',
       },
       { title: 'Print the page', text: '“Print this page” prints one sheet for the interview.' },
+      {
+        title: 'Look at whole cohorts',
+        text: 'Learning curves of the cohorts, who is behind the others at the same trial numbers, and who has not come for two weeks to three months.',
+        to: { href: '/cohorts', name: 'Cohorts' },
+      },
+      {
+        title: 'Compare two cohorts',
+        text: 'Choose two cohorts and press Compare. The test is chosen already; the result shows the difference with its interval, its size and every person as a point. It uses the trials of those who agreed to research.',
+        to: { href: '/analysis', name: 'Analysis' },
+      },
     ],
     terms: [
       kLearning,

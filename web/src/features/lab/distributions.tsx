@@ -51,6 +51,12 @@ function Bars({
   );
 }
 
+const kBinColumns = ['signal', 'from', 'to', 'share'];
+
+/** A histogram as rows of a file. */
+const binRows = (name: string, of: Distribution | undefined): (string | number | null)[][] =>
+  of ? of.shares.map((share, i) => [name, of.edges[i] ?? null, of.edges[i + 1] ?? null, share]) : [];
+
 function Residuals({ before, after, names }: Props) {
   if (!before.residual) return null;
   const quantity = channelQuantity(before.name),
@@ -69,6 +75,11 @@ function Residuals({ before, after, names }: Props) {
           to: most(before.residual.shares, after?.residual?.shares ?? []) * 1.05,
         }}
         summary={summary}
+        data={{
+          name: `residual of ${channelName(before.name)}`,
+          columns: kBinColumns,
+          rows: [...binRows(names.before, before.residual), ...binRows(names.after ?? '', after?.residual)],
+        }}
       >
         {(places) => (
           <>
@@ -98,6 +109,15 @@ function Values({ before, after, names }: Props) {
           to: most(before.measured.shares, before.simulated.shares, after?.simulated?.shares ?? []) * 1.05,
         }}
         summary={`How often each value was measured, and simulated by ${names.before}${names.after === null ? '' : ` and ${names.after}`}.`}
+        data={{
+          name: `values of ${channelName(before.name)}`,
+          columns: kBinColumns,
+          rows: [
+            ...binRows('measured', before.measured),
+            ...binRows(names.before, before.simulated),
+            ...binRows(names.after ?? '', after?.simulated),
+          ],
+        }}
       >
         {(places) => (
           <>
@@ -137,6 +157,16 @@ function Spectra({ before, after, names }: Props) {
         across={{ title: 'frequency, Hz', from: frequency[0] ?? 1, to: frequency.at(-1) ?? 10, log: true }}
         up={{ title: `(${channelUnit(before.name)})² per Hz`, from: low, to: Math.max(...powers) * 2, log: true }}
         summary={`Power spectrum of the measured signal and of the residual of ${names.before}${names.after === null ? '' : ` and of ${names.after}`}.`}
+        data={{
+          name: `spectrum of ${channelName(before.name)}`,
+          columns: ['frequency_Hz', 'measured', names.before, ...(names.after === null ? [] : [names.after])],
+          rows: found.frequency_Hz.map((at, i) => [
+            at,
+            found.measured[i] ?? null,
+            found.residual[i] ?? null,
+            ...(names.after === null ? [] : [after?.spectrum?.residual[i] ?? null]),
+          ]),
+        }}
       >
         {(places) => (
           <>

@@ -46,6 +46,11 @@ export function ErrorSteps({ steps, noise_floor, unit }: Props) {
         }}
         height_px={260}
         summary={summary}
+        data={{
+          name: 'error by step',
+          columns: ['model', `error_of_fitted_trials_in_${unit}`, `error_of_held_out_trials_in_${unit}`],
+          rows: steps.map(({ name, rmse, held_out_rmse }) => [name, rmse, held_out_rmse]),
+        }}
       >
         {(places) => (
           <>

@@ -3,7 +3,7 @@ import { describe, expect, it } from 'vitest';
 import type { Diagnosis, LabRun } from '@/api';
 import { differences } from './differences';
 import { primaryUnit } from './comparison-parts';
-import { kBlankOwn, mistypedStates, ownEffect, parametersIn, withFormula } from './own-effect';
+import { kBlankOwn, mistypedStates, ownEffect, parametersIn, withFormula, withState } from './own-effect';
 import { parameterName } from './parameters';
 import { isNotBetter, verdictOf } from './verdict';
 import { channelQuantity, effectName, joined } from './names';
@@ -81,14 +81,24 @@ describe('a formula of one’s own', () => {
     expect(mistypedStates(withFormula(kBlankOwn, 'f * sign(v_m_s)', states), states)).toEqual([]);
   });
 
+  it('is not checked, and so not fitted, until a mistyped state variable is replaced', () => {
+    const typed = withFormula(kBlankOwn, 'F_c*sign(v) + v_c', states);
+    expect(ownEffect(typed, 'probing', { adds_to: 'fz_N', states })).toBeNull();
+    const formula = withState(typed.formula, 'v', 'v_m_s');
+    expect(formula).toBe('F_c*sign(v_m_s) + v_c');
+    const clear = withFormula(typed, formula, states);
+    expect(clear.parameters.map(({ name }) => name)).toEqual(['F_c', 'v_c']);
+    expect(ownEffect(clear, 'probing', { adds_to: 'fz_N', states })).toMatchObject({ formula });
+  });
+
   it('goes to the server as tractus-effect/1, and not before there is one', () => {
-    expect(ownEffect(kBlankOwn, 'probing', { adds_to: 'fz_N' })).toBeNull();
+    expect(ownEffect(kBlankOwn, 'probing', { adds_to: 'fz_N', states })).toBeNull();
     const draft = {
       name: 'drag',
       formula: ' c * v_m_s ',
       parameters: [{ name: 'c', unit: 'N*s/m', initial: '2', low: '0', high: '50' }],
     };
-    expect(ownEffect(draft, 'probing', { adds_to: 'fz_N' })).toEqual({
+    expect(ownEffect(draft, 'probing', { adds_to: 'fz_N', states })).toEqual({
       format: 'tractus-effect/1',
       id: 'expression:drag',
       rig: 'probing',

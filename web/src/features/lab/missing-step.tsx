@@ -120,7 +120,10 @@ function Found({ run, diagnosis, model, set, rig }: Props & { readonly run: LabR
           ) : null}
         </div>
       </Card>
-      <Card title="Error by step">
+      <Card
+        title="Error by step"
+        aside={<Badge>{diagnosis.held_out === 'trials' ? 'held out by trial' : diagnosis.held_out}</Badge>}
+      >
         <ErrorSteps
           steps={diagnosis.steps.map(({ model: name, ...errors }) => ({ name: stepName(name), ...errors }))}
           noise_floor={diagnosis.base.noise_floor}
@@ -146,7 +149,7 @@ function Found({ run, diagnosis, model, set, rig }: Props & { readonly run: LabR
       {drawable ? (
         <Card
           title={drawable.names.after ? 'Residual without and with the effects' : 'Residual'}
-          aside={<Badge>{diagnosis.held_out === 'trials' ? 'held out by trial' : diagnosis.held_out}</Badge>}
+          aside={<Badge>fitted trials</Badge>}
         >
           <div className={styles.stack}>
             <Headline before={drawable.before} after={drawable.after} names={drawable.names} />

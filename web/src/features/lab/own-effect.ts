@@ -74,9 +74,18 @@ export function withFormula(draft: OwnDraft, formula: string, states: readonly {
   return { ...draft, formula, parameters };
 }
 
-/** null while there is nothing to check yet. */
-export function ownEffect(draft: OwnDraft, rig: Rig, list: Pick<EffectList, 'adds_to'>): OwnEffect | null {
-  if (draft.formula.trim() === '' || draft.name.trim() === '') return null;
+/** The formula with a state variable in place of a name that was mistyped. */
+export const withState = (formula: string, typed: string, state: string) =>
+  formula.replace(/[A-Za-z_][A-Za-z0-9_]*/g, (name) => (name === typed ? state : name));
+
+/** null while there is nothing to check yet: a mistyped state variable would be fitted as a constant. */
+export function ownEffect(
+  draft: OwnDraft,
+  rig: Rig,
+  list: Pick<EffectList, 'adds_to'> & { readonly states: readonly { readonly name: string }[] },
+): OwnEffect | null {
+  if (draft.formula.trim() === '' || draft.name.trim() === '' || mistypedStates(draft, list.states).length > 0)
+    return null;
   const parameters = Object.fromEntries(
     draft.parameters.map(({ name, unit, initial, low, high }) => [
       name,

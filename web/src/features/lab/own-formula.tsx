@@ -1,9 +1,17 @@
 import { useQuery } from '@tanstack/react-query';
 import { useEffect, useId, useState } from 'react';
 import { checkEffect, type EffectList, type OwnEffect, type Rig } from '@/api';
-import { Field, Scroll, useSettled } from '@/ui';
+import { Button, Field, Scroll, useSettled } from '@/ui';
 import styles from './lab.module.css';
-import { kBlankOwn, mistypedStates, ownEffect, withFormula, type OwnDraft, type OwnParameter } from './own-effect';
+import {
+  kBlankOwn,
+  mistypedStates,
+  ownEffect,
+  withFormula,
+  withState,
+  type OwnDraft,
+  type OwnParameter,
+} from './own-effect';
 
 interface Props {
   readonly rig: Rig;
@@ -67,16 +75,19 @@ export function OwnFormula({ rig, list, onOwn }: Props) {
       ...draft,
       parameters: draft.parameters.map((one) => (one.name === name ? { ...one, ...changes } : one)),
     });
+  const mistyped = mistypedStates(draft, list.states);
   const message =
-    own === null
-      ? `The result must have the unit ${list.adds_unit}.`
-      : check.isError
-        ? check.error.message
-        : settled !== draft || check.isPending
-          ? 'Checking the units…'
-          : check.data.ok
-            ? `✓ The units are consistent: the result has the unit ${list.adds_unit}.`
-            : check.data.error;
+    mistyped.length > 0
+      ? 'The units are checked once each name is clear: use the state variable, or give the parameter another name.'
+      : own === null
+        ? `The result must have the unit ${list.adds_unit}.`
+        : check.isError
+          ? check.error.message
+          : settled !== draft || check.isPending
+            ? 'Checking the units…'
+            : check.data.ok
+              ? `✓ The units are consistent: the result has the unit ${list.adds_unit}.`
+              : check.data.error;
   const wrong = own !== null && (check.isError || check.data?.ok === false);
   return (
     <div className={styles.own}>
@@ -103,9 +114,15 @@ export function OwnFormula({ rig, list, onOwn }: Props) {
       <p id={id} role="status" className={wrong ? styles.wrong : styles.muted} data-part="unit-check">
         {message}
       </p>
-      {mistypedStates(draft, list.states).map(({ typed, state }) => (
+      {mistyped.map(({ typed, state }) => (
         <p key={typed} className={styles.wrong} role="status">
-          <code>{typed}</code> is a parameter and will be fitted. The state variable is <code>{state}</code>.
+          <code>{typed}</code> would be fitted as a constant. The state variable is <code>{state}</code>.{' '}
+          <Button
+            look="quiet"
+            onClick={() => setDraft(withFormula(draft, withState(draft.formula, typed, state), list.states))}
+          >
+            Use {state}
+          </Button>
         </p>
       ))}
       {draft.parameters.length > 0 ? (

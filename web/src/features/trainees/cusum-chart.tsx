@@ -74,7 +74,11 @@ export function CusumChart({ trainee }: { readonly trainee: Trainee }) {
               back === null ? null : (
                 <g key={at_trial} className={styles.recovered}>
                   <line x1={places.x(back)} x2={places.x(back)} y1={places.y(0)} y2={places.y(rule.relapse)} />
-                  <text x={places.x(back) + 4} y={places.y(rule.relapse / 2)}>
+                  <text
+                    x={places.x(back) + (back > last / 2 ? -4 : 4)}
+                    y={places.y(rule.relapse / 2)}
+                    textAnchor={back > last / 2 ? 'end' : 'start'}
+                  >
                     recovered {startOf(attempts, back)}
                   </text>
                 </g>

@@ -1,2 +1,3 @@
+export { CohortsPage } from './cohorts-page';
 export { TraineePage } from './trainee-page';
 export { TraineesPage } from './trainees-page';

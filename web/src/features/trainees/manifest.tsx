@@ -5,6 +5,7 @@ import { sessionQuery } from '@/api';
 import type { Feature } from '@/ui';
 
 const index = () => import('./index');
+const CohortsPage = lazy(() => index().then(({ CohortsPage: page }) => ({ default: page })));
 const TraineePage = lazy(() => index().then(({ TraineePage: page }) => ({ default: page })));
 const TraineesPage = lazy(() => index().then(({ TraineesPage: page }) => ({ default: page })));
 
@@ -20,6 +21,7 @@ export const feature: Feature = {
     { to: '/me', name: 'My progress', roles: ['trainee'], order: 70 },
   ],
   pages: [
+    { path: '/cohorts', show: () => <CohortsPage /> },
     { path: '/me', show: () => <OwnPage /> },
     { path: '/trainees', show: () => <TraineesPage /> },
     { path: '/trainees/:name', show: (at) => <TraineePage key={at('name')} name={decodeURIComponent(at('name'))} /> },

@@ -1,5 +1,5 @@
 /** Filter of the list of trainees, inactivity, and the running share of correct answers. Pure. */
-import type { TraineeSummary } from '@/api';
+import type { CohortProgress, TraineePace, TraineeSummary } from '@/api';
 
 const kDay_us = 86_400_000_000;
 const kInactive_days = 60;
@@ -22,3 +22,18 @@ export function runningShare(right: readonly boolean[]): (number | null)[] {
     return last.length < 5 ? null : last.filter(Boolean).length / last.length;
   });
 }
+
+/** A trainee of a cohort. */
+export interface Member extends TraineePace {
+  readonly cohort: string;
+}
+
+/** No trial in the last days, or none at all. */
+export const isAway = ({ last_utc_us: last }: Pick<TraineePace, 'last_utc_us'>, days: number, now_utc_us: number) =>
+  last === null || now_utc_us - last > days * kDay_us;
+
+/** Everybody in the cohorts: who is behind first, then who has been away longest. */
+export const membersOf = (cohorts: readonly CohortProgress[]): Member[] =>
+  cohorts
+    .flatMap(({ name, trainees }) => trainees.map((one) => ({ ...one, cohort: name })))
+    .sort((a, b) => Number(b.behind) - Number(a.behind) || (a.last_utc_us ?? 0) - (b.last_utc_us ?? 0));

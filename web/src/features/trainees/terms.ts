@@ -22,3 +22,5 @@ export const kRelapse =
 export const kInterval = '95 % interval (Wilson): range of the true share, given the number of trials.';
 export const kCalibration =
   'Stated confidence against the share of correct answers. On the diagonal, confidence matches accuracy; below the diagonal, confidence is too high.';
+export const kBehind =
+  'Correct answers of the other trainees of the cohort at the same trial numbers. A trainee is called behind where the last ten answers are correct less often than that (Fisher’s exact test, p ≤ 0.05): of forty trainees who are not, one is called so by chance.';

@@ -20,9 +20,14 @@ export function TraineesPage() {
   const rule = query.data?.rule;
   return (
     <div className={styles.page}>
-      <div>
-        <h1>Trainees</h1>
-        <p className={styles.lead}>Which trainees are on track, have relapsed, or have had no trial for two months.</p>
+      <div className={styles.head}>
+        <div>
+          <h1>Trainees</h1>
+          <p className={styles.lead}>
+            Which trainees are on track, have relapsed, or have had no trial for two months.
+          </p>
+        </div>
+        <Link href="/cohorts">Cohorts</Link>
       </div>
       {query.isError ? (
         <Notice tone="bad" title="The trainees could not be loaded." onRetry={() => void query.refetch()}>

@@ -1,7 +1,7 @@
 import { describe, expect, it } from 'vitest';
 import type { TraineeSummary } from '@/api';
 import { share, utcMicroseconds } from '@/units';
-import { isInactive, runningShare, shownOf } from './standing';
+import { isAway, isInactive, membersOf, runningShare, shownOf } from './standing';
 
 const one = (changes: Partial<TraineeSummary>): TraineeSummary => ({
   trainee: 'S01',
@@ -40,4 +40,35 @@ it('the share of the last ten is not said of fewer than five trials, and forgets
   expect(running[9]).toBe(0);
   expect(running[14]).toBe(0.5);
   expect(running[19]).toBe(1);
+});
+
+describe('the members of cohorts', () => {
+  const member = (trainee: string, behind: boolean, day: number | null) => ({
+    trainee,
+    trials: day === null ? 0 : 12,
+    recent_trials: day === null ? 0 : 10,
+    recent_right: 0,
+    others_share: null,
+    behind,
+    last_utc_us: day === null ? null : utcMicroseconds(day * kDay_us),
+  });
+
+  it('come with who is behind first, then who has been away longest', () => {
+    const cohorts = [
+      { id: 'a', name: 'Fellows', bins: [], trainees: [member('F1', false, 9), member('F2', true, 9)] },
+      { id: 'b', name: 'Residents', bins: [], trainees: [member('R1', false, 3), member('R2', false, null)] },
+    ];
+    expect(membersOf(cohorts).map(({ trainee, cohort }) => `${trainee} ${cohort}`)).toEqual([
+      'F2 Fellows',
+      'R2 Residents',
+      'R1 Residents',
+      'F1 Fellows',
+    ]);
+  });
+
+  it('are away after more days than were chosen without a trial, or with none at all', () => {
+    expect(isAway(member('R1', false, 0), 30, 30 * kDay_us)).toBe(false);
+    expect(isAway(member('R1', false, 0), 30, 31 * kDay_us)).toBe(true);
+    expect(isAway(member('R2', false, null), 30, 0)).toBe(true);
+  });
 });

@@ -98,6 +98,55 @@ describe.skipIf(bin === undefined)('on a real server', () => {
     await page.context().close();
   }, 120_000);
 
+  it('prints one sheet and whole curves after a year too: 64 trials of nine scenarios', async () => {
+    const page = await enter('director');
+    await page.route('**/api/v1/cohort/trainees/*', async (route) => {
+      const answer = await route.fetch();
+      const one = (await answer.json()) as { attempts: object[]; scenarios: object[]; relapses: object[] };
+      const again = <Row>(rows: readonly Row[], many: number) =>
+        Array.from({ length: many }, (_, i) => rows[i % rows.length] as Row);
+      await route.fulfill({
+        json: {
+          ...one,
+          trials: 64,
+          attempts: again(one.attempts, 64).map((attempt, i) => ({ ...attempt, number: i + 1 })),
+          scenarios: again(one.scenarios, 9).map((row, i) => ({ ...row, scenario: `L3 left pedicle, whole ${i}` })),
+          competent_at_trial: 30,
+          relapses: [{ at_trial: 40, recovered_at_trial: 60 }],
+        },
+      });
+    });
+    await page.goto(`/trainees/${encodeURIComponent(kAda)}`);
+    await page.getByRole('heading', { name: 'Competence' }).waitFor();
+    await page.waitForLoadState('networkidle');
+    const pdf = await page.pdf({ format: 'A4' });
+    expect(pdf.toString('latin1').match(/\/Type\s*\/Page[^s]/g)?.length, 'sheets of paper').toBe(1);
+    await page.emulateMedia({ media: 'print' });
+    await page.setViewportSize({ width: 688, height: 1017 });
+    const outside = await page.evaluate(() =>
+      [...document.querySelectorAll('figure')].flatMap((figure) => {
+        const end = figure.getBoundingClientRect().right;
+        return [...figure.querySelectorAll('svg circle, svg text')]
+          .filter((mark) => mark.getBoundingClientRect().right > end + 1)
+          .map((mark) => mark.textContent || mark.tagName);
+      }),
+    );
+    expect(outside, 'marks beyond the edge of their chart').toEqual([]);
+    await page.context().close();
+  }, 120_000);
+
+  it('a director sees how the cohort learns and who came last', async () => {
+    const page = await enter('director');
+    await page.goto('/trainees');
+    await page.getByRole('link', { name: 'Cohorts', exact: true }).click();
+    await page.getByRole('img', { name: /^Share of correct answers by running trial number/ }).waitFor();
+    for (const name of [kAda, kBen]) await page.getByRole('link', { name }).waitFor();
+    expect(await page.getByText('behind', { exact: true }).count(), 'two of sixteen trials each').toBe(0);
+    await page.goto('/analysis');
+    await page.getByText('Two cohorts with scored trials are needed.').waitFor();
+    await page.context().close();
+  }, 60_000);
+
   it('a member of the faculty opens a palpation trial of the own cohort', async () => {
     const page = await enter('faculty');
     await page.goto('/trials');

@@ -112,6 +112,10 @@ describe.skipIf(bin === undefined)('a set with a hidden effect', () => {
       await page.locator('[data-part="error-steps"] text').filter({ hasText: 'noise floor' }).first().innerHTML(),
     );
     expect(newtons(held.at(-1) ?? '')).toBeLessThanOrEqual(1.1 * floor);
+    // Only the errors on held-out trials are called so: the residual is that of the fitted trials.
+    const residual = page.locator('section').filter({ has: page.locator('[data-part="error-before"]') });
+    expect(await residual.getByText('fitted trials', { exact: true }).count()).toBe(1);
+    expect(await page.getByText('held out by trial').count()).toBe(1);
     await page.waitForLoadState('networkidle');
     await shot('missing');
     if (process.env.GUIDE_PICTURES) {
