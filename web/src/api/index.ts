@@ -27,3 +27,5 @@ export * from './class-queries';
 export * from './sign-in-card';
 export * from './criteria-queries';
 export type * from './criteria-schemas';
+export * from './rating-queries';
+export type * from './rating-schemas';

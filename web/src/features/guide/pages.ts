@@ -102,6 +102,11 @@ export const kPages: readonly GuidePage[] = [
         to: { href: '/trials', name: 'Trials' },
         picture: { name: 'faculty', shows: 'A palpation trial: signals, path of the tip in 3-D, touched walls' },
       },
+      {
+        title: 'Rate a trial',
+        text: 'In the debriefing, have a trial rated by a rubric, by how many people, and whether the trainee’s name is hidden until all have rated. Nobody sees another’s rating before that. A submitted rating cannot be changed, only superseded with a reason.',
+        to: { href: '/ratings', name: 'Ratings' },
+      },
     ],
     terms: [
       ['Walls touched', 'The unrolled wall of the tract, with the share of each side that the tip touched.'],
@@ -128,6 +133,11 @@ export const kPages: readonly GuidePage[] = [
         text: 'One page shows the summary, learning, competence, recognition by scenario, and confidence.',
       },
       { title: 'Print the page', text: '“Print this page” prints one sheet for the interview.' },
+      {
+        title: 'Make a rubric',
+        text: 'Items with points, described at both ends and in the middle, or the global rating scale of OSATS to begin with. Faculty rate trials by it; the agreement of raters is shown beside it.',
+        to: { href: '/ratings/rubrics', name: 'Rubrics' },
+      },
     ],
     terms: [
       kLearning,
