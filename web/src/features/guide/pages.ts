@@ -82,6 +82,11 @@ export const kPages: readonly GuidePage[] = [
         to: { href: '/network/cohorts', name: 'Cohorts' },
       },
       {
+        title: 'Upload a volume',
+        text: 'A folder or a zip of one DICOM series, or a NIfTI or NRRD file. The server takes the patient’s identity out; a director or an administrator looks at the slices and releases the volume.',
+        to: { href: '/volumes', name: 'Volumes' },
+      },
+      {
         title: 'Create a case',
         text: 'Place the entry and the target of the tract in the slices of a CT. Choose the breached wall and the depth of the breach; the page shows the position of the breach and the thickness of the wall. Alternatively, let the trainee drill the channel and then palpate it. For the probing rig, define the layers and walls of a scenario.',
         to: { href: '/cases', name: 'Cases' },
