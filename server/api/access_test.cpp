@@ -179,6 +179,7 @@ TEST_F(Access, ATraineeAndAStationReachTheseRoutesAlone) {
                                                          "assignment of own",
                                                          "trainee of own",
                                                          "trialComments of own",
+                                                         "trialRatings of own",
                                                          "ownInvitations of own",
                                                          "acceptInvitation of own",
                                                          "declineInvitation of own",
@@ -257,7 +258,9 @@ TEST_F(Access, GrantsOfSomeObjectsNameTheObject) {
                 "trainee", "ownInvitations",
                 // criteria_test.cpp, assignments_test.cpp and progress_test.cpp look at these
                 "addCriteria", "casePassing", "cohortProgress", "curriculumProgress", "expertBound",
-                "giveCurriculum", "releaseManyResults", "repeatCurriculumStep"}));
+                "giveCurriculum", "releaseManyResults", "repeatCurriculumStep",
+                // ratings_test.cpp at these
+                "ratingAgreement", "ratingRequests"}));
 }
 
 TEST_F(Access, ListsHoldWhatOneMaySee) {

@@ -261,16 +261,18 @@ TEST_F(Relations, ARouteThatChangesSomethingNamesEveryEndOrIsOfOneObject) {
       "makeStudy", "enrolParticipant", "setStudyState", "setParticipantState", "releaseParticipant",
       "markTrialInvalid",
       // a trial and its caller; as an example of its own case
-      "addComment", "removeComment", "setReference",
+      "addComment", "removeComment", "setReference", "askForRating", "withdrawRatingRequest",
+      "addRating",
       // a station, by itself or by those who have all stations
       "takeTrials", "signInAtStation", "nextTrial", "signOutAtStation", "announceUpload",
       "appendUpload", "commitUpload", "reportStation", "stationModelThere", "makeEnrolmentCode",
       "enrolStation", "revokeStation", "stopStation", "limitStation",
-      // what all who may call these have all of: volumes, cases, scenarios, models, measurements
+      // what all who may call these have all of: volumes, cases, scenarios, models, measurements,
+      // rubrics
       "addVolume", "releaseVolume", "refuseVolume", "planTract", "certifyTract", "makeCase",
       "retireCase", "checkScenario", "addScenario", "publishScenario", "addModel",
       "addMeasurements", "checkEffect", "startDiagnosis", "startComparison", "startFit",
-      "stopLabRun", "publishLabRun",
+      "stopLabRun", "publishLabRun", "addRubric",
       // released trials alone (db/store/cohort/released.hpp)
       "lockAnalysisPlan", "analyseCohort",
       // the server's own

@@ -7,6 +7,7 @@
 
 #include "core/bytes.hpp"
 #include "core/csv.hpp"
+#include "db/store/trials/ratings.hpp"
 #include "metrics/metric.hpp"
 
 namespace tractus {
@@ -81,6 +82,11 @@ std::map<std::string, std::string> meanings_of(const std::vector<std::string>& m
     if (std::ranges::find(metrics, info.id) != metrics.end())
       out[info.id] =
           fmt::format("{}, {}: {} {}", info.label, info.unit, info.definition, info.source);
+  for (const auto& id : metrics)
+    if (id.starts_with(store::kRatingScore))
+      out[id] =
+          "rating by people, 1: mean over the raters of the sum of the items' scores; named by the "
+          "rubric and its version";
   return out;
 }
 

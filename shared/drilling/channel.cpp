@@ -3,6 +3,8 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <numbers>
 #include <vector>
 
 #include "volume/carve.hpp"
@@ -20,7 +22,9 @@ using volume::Wall;
 constexpr double kOfIt = 0.5;      // share lost
 constexpr double kEach_m = 0.001;  // along the tract, where walls are looked for
 constexpr double kEnclosed_m = 0.012, kPastEntry_m = 0.005;  // as WallFinder::thinnest has it
-constexpr double kSlender = 3.0;  // length over width from which there is a direction
+constexpr int kDirections = 48;                              // of an outline
+constexpr std::size_t kLeastOutline = 36;  // of them with a wall, else there is no outline
+constexpr double kSlender = 3.0;           // length over width from which there is a direction
 
 struct Lost {
   Vec3 at_m;
@@ -76,6 +80,14 @@ class Faces {
       anterior_m_ = found->outer_m;
   }
 
+  /// Depths with four known side walls.
+  std::vector<double> known_m() const {
+    std::vector<double> out;
+    for (std::size_t i = 0; i < sections_.size(); ++i)
+      if (sections_[i]) out.push_back(double(i) * kEach_m);
+    return out;
+  }
+
   void meet(const Vec3& at_m, PilotHole& out) const {
     const double depth_m = tract_.depth_of(at_m);
     const Vec2 offset = tract_.offset_of(at_m);
@@ -113,9 +125,100 @@ class Faces {
   std::optional<double> anterior_m_;
 };
 
+/// The cortex's outer face about the tract at a depth; empty where too much of it is not known.
+std::vector<Vec2> outline_at(const volume::WallFinder& finder, const volume::Tract& tract,
+                             double depth_m) {
+  std::vector<Vec2> out;
+  for (int k = 0; k < kDirections; ++k) {
+    const double angle = 2.0 * std::numbers::pi * k / kDirections;
+    const auto found = finder.wall_towards(tract, angle, depth_m);
+    if (found && found->inner_m <= kEnclosed_m)
+      out.push_back(found->outer_m * Vec2(std::cos(angle), std::sin(angle)));
+  }
+  return out.size() < kLeastOutline ? std::vector<Vec2>() : out;
+}
+
+Vec2 nearest_on(const Vec2& from, const Vec2& to, const Vec2& point) {
+  const Vec2 side = to - from;
+  const double length2 = side.squaredNorm();
+  const double along =
+      length2 > 0.0 ? std::clamp((point - from).dot(side) / length2, 0.0, 1.0) : 0.0;
+  return from + along * side;
+}
+
+struct Beyond {
+  double by_m;    ///< negative within
+  Vec2 cortex_m;  ///< the nearest point of the outline
+};
+
+Beyond beyond(const std::vector<Vec2>& outline, const Vec2& point) {
+  double nearest_m = std::numeric_limits<double>::infinity();
+  Vec2 cortex = point;
+  bool within = false;  // by the sides that a line from the point towards medial crosses
+  for (std::size_t i = 0; i < outline.size(); ++i) {
+    const Vec2 &a = outline[i], &b = outline[(i + 1) % outline.size()];
+    const Vec2 on = nearest_on(a, b, point);
+    if ((on - point).norm() < nearest_m) nearest_m = (on - point).norm(), cortex = on;
+    if ((a.y() > point.y()) != (b.y() > point.y()) &&
+        point.x() < a.x() + (point.y() - a.y()) / (b.y() - a.y()) * (b.x() - a.x()))
+      within = !within;
+  }
+  return {within ? -nearest_m : nearest_m, cortex};
+}
+
+/// The channel's voxels within half a step of a depth against the outline there.
+std::optional<CrossSection> section_of(const std::vector<Vec2>& channel, std::vector<Vec2> outline,
+                                       double depth_m, double voxel_m3) {
+  if (channel.empty() || outline.empty()) return std::nullopt;
+  CrossSection out;
+  out.depth_m = depth_m;
+  out.beyond_m = -std::numeric_limits<double>::infinity();
+  for (const Vec2& point : channel) {
+    out.centre_m += point / double(channel.size());
+    const Beyond found = beyond(outline, point);
+    if (found.by_m <= out.beyond_m) continue;
+    out.beyond_m = found.by_m, out.cortex_m = found.cortex_m, out.farthest_m = point;
+  }
+  out.radius_m = std::sqrt(double(channel.size()) * voxel_m3 / kEach_m / std::numbers::pi);
+  out.outline_m = std::move(outline);
+  return out;
+}
+
+std::optional<CrossSection> worst_section(const std::vector<Lost>& voxels, const Erosion& erosion,
+                                          const volume::TransferFunction& transfer,
+                                          const volume::Tract& tract,
+                                          const std::vector<double>& depths_m) {
+  const volume::WallFinder finder(erosion.bone(), transfer);
+  std::optional<CrossSection> out;
+  for (const double depth_m : depths_m) {
+    std::vector<Vec2> channel;
+    for (const Lost& voxel : voxels)
+      if (std::abs(tract.depth_of(voxel.at_m) - depth_m) <= kEach_m / 2.0)
+        channel.push_back(tract.offset_of(voxel.at_m));
+    if (channel.empty()) continue;
+    auto section = section_of(channel, outline_at(finder, tract, depth_m), depth_m,
+                              erosion.bone().geometry.spacing_m.prod());
+    if (section && (!out || section->beyond_m > out->beyond_m)) out = std::move(section);
+  }
+  return out;
+}
+
+/// To the micrometre.
+Json rounded(double value_m) { return std::round(value_m * 1e6) / 1e6; }
+Json rounded(const Vec2& at_m) { return Json::array({rounded(at_m.x()), rounded(at_m.y())}); }
+
 Json json_of(const std::optional<double>& value) { return value ? Json(*value) : Json(); }
 
 }  // namespace
+
+Json CrossSection::to_json() const {
+  Json outline = Json::array();
+  for (const Vec2& point : outline_m) outline.push_back(rounded(point));
+  return {{"depth_m", rounded(depth_m)},     {"beyond_m", rounded(beyond_m)},
+          {"cortex_m", rounded(cortex_m)},   {"farthest_m", rounded(farthest_m)},
+          {"outline_m", std::move(outline)}, {"centre_m", rounded(centre_m)},
+          {"radius_m", rounded(radius_m)}};
+}
 
 Json PilotHole::to_json() const {
   Json walls = Json::object();
@@ -126,7 +229,8 @@ Json PilotHole::to_json() const {
            entry_offset_m ? Json::array({entry_offset_m->x(), entry_offset_m->y()}) : Json()},
           {"angle_rad", json_of(angle_rad)},
           {"depth_m", json_of(depth_m)},
-          {"beyond_m", std::move(walls)}};
+          {"beyond_m", std::move(walls)},
+          {"worst", worst ? worst->to_json() : Json()}};
 }
 
 PilotHole channel_of(const Erosion& erosion, const volume::TransferFunction& transfer,
@@ -142,6 +246,7 @@ PilotHole channel_of(const Erosion& erosion, const volume::TransferFunction& tra
     out.depth_m = std::max(out.depth_m.value_or(depth_m), depth_m);
     faces.meet(voxel.at_m, out);
   }
+  out.worst = worst_section(voxels, erosion, transfer, tract, faces.known_m());
   return out;
 }
 

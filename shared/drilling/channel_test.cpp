@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <functional>
 #include <numbers>
 
 #include "drilling/drilling_test_support.hpp"
@@ -13,18 +14,29 @@ namespace {
 using math::Vec3;
 using volume::Wall;
 
-/// 1000 HU within |x| < 6 mm, |y| < 4 mm, |z| < 12 mm, 40 HU about it: a bar along z, 0.35 mm.
-volume::Volume bar() {
+/// 1000 HU where `within` says so, 40 HU about it, 0.35 mm.
+volume::Volume shaped(const std::function<bool(const Vec3&)>& within) {
   volume::Volume bone = block(91, 0.00035);
   for (int k = 0; k < 91; ++k)
     for (int j = 0; j < 91; ++j)
       for (int i = 0; i < 91; ++i) {
         const Vec3 p = bone.geometry.position_of({double(i), double(j), double(k)});
-        const bool within =
-            std::abs(p.x()) < 0.006 && std::abs(p.y()) < 0.004 && std::abs(p.z()) < 0.012;
-        bone.counts[bone.offset(i, j, k)] = within ? 2024 : 1064;
+        bone.counts[bone.offset(i, j, k)] = within(p) ? 2024 : 1064;
       }
   return bone;
+}
+
+/// A bar along z: |x| < 6 mm, |y| < 4 mm, |z| < 12 mm.
+volume::Volume bar() {
+  return shaped([](const Vec3& p) {
+    return std::abs(p.x()) < 0.006 && std::abs(p.y()) < 0.004 && std::abs(p.z()) < 0.012;
+  });
+}
+
+/// A round bar along z: radius 5 mm, |z| < 12 mm.
+volume::Volume rod() {
+  return shaped(
+      [](const Vec3& p) { return std::hypot(p.x(), p.y()) < 0.005 && std::abs(p.z()) < 0.012; });
 }
 
 /// Along the bar's middle, 18 mm long, from 2 mm within.
@@ -83,6 +95,34 @@ TEST(PilotHole, LeavesTheBoneWhereTheBallReachesBeyondItsFace) {
               0.0005);
 }
 
+// The ball of 1.5 mm goes along 4.5 mm off the axis, half a right angle from medial to superior: it
+// reaches 6 mm, and the rod's face is at 5 mm. No side wall lies that way.
+TEST(PilotHole, IsFarthestBeyondTheCortexInAnyDirection) {
+  const double aside = 0.0045 / std::numbers::sqrt2;
+  const PilotHole made = drilled(rod(), Vec3(aside, aside, -0.012), Vec3(aside, aside, 0.006));
+  ASSERT_TRUE(made.worst);
+  EXPECT_NEAR(made.worst->beyond_m, 0.001, 0.0004);
+  EXPECT_NEAR(made.worst->farthest_m.norm(), 0.006, 0.0004);
+  EXPECT_NEAR(std::atan2(made.worst->farthest_m.y(), made.worst->farthest_m.x()),
+              std::numbers::pi / 4.0, 0.1);
+  EXPECT_NEAR(made.worst->cortex_m.norm(), 0.005, 0.0003);
+  EXPECT_NEAR(made.worst->centre_m.x(), aside, 1e-4);
+  EXPECT_NEAR(made.worst->radius_m, 0.0015, 0.0002);
+  for (const math::Vec2& face : made.worst->outline_m) EXPECT_NEAR(face.norm(), 0.005, 0.0003);
+  for (const auto& beyond_m : made.beyond_m) EXPECT_LT(beyond_m.value_or(-1.0), 0.0);
+}
+
+// From the axis to the ball's surface 1.5 mm, to the bar's nearest face 4 mm.
+TEST(PilotHole, WithinTheCortexSaysWhatRemains) {
+  const PilotHole made = drilled(bar(), Vec3(0, 0, -0.012), Vec3(0, 0, 0.006));
+  ASSERT_TRUE(made.worst);
+  EXPECT_NEAR(made.worst->beyond_m, 0.0015 - 0.004, 0.0004);
+  EXPECT_NEAR(std::abs(made.worst->cortex_m.y()), 0.004, 0.0003);
+  const core::Json json = made.to_json().at("worst");
+  EXPECT_EQ(json.at("outline_m").size(), made.worst->outline_m.size());
+  EXPECT_NEAR(json.at("beyond_m").get<double>(), made.worst->beyond_m, 1e-6);
+}
+
 TEST(PilotHole, OfAHoleHasNoDirectionAndOfNothingHasNothing) {
   const PilotHole hole = drilled(bar(), Vec3(0, 0, 0.000), Vec3(0, 0, 0.001));
   EXPECT_GT(hole.voxels, 100u);
@@ -91,6 +131,8 @@ TEST(PilotHole, OfAHoleHasNoDirectionAndOfNothingHasNothing) {
   const PilotHole nothing = drilled(bar(), Vec3(0, 0, -0.019), Vec3(0, 0, -0.0189));
   EXPECT_FALSE(nothing.depth_m);
   EXPECT_TRUE(nothing.to_json().at("beyond_m").at("medial").is_null());
+  EXPECT_FALSE(nothing.worst);
+  EXPECT_TRUE(nothing.to_json().at("worst").is_null());
 }
 
 }  // namespace

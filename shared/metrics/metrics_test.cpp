@@ -321,15 +321,36 @@ TEST(Metrics, OfADrilledChannelAreWhatItsEventSays) {
   EXPECT_EQ(bench.score("channel_breach").note, "through the superior wall");
 }
 
+// The bounds of the classes [Gertzbein1990]: 0, 2, 4 and 6 mm.
+TEST(BreachClass, ChangesAtTheBoundsOfTheSource) {
+  const std::vector<std::pair<double, char>> known{
+      {-0.001, 'A'}, {0.0, 'A'},   {0.0001, 'B'}, {0.0019, 'B'}, {0.002, 'C'},
+      {0.0039, 'C'}, {0.004, 'D'}, {0.0059, 'D'}, {0.006, 'E'},  {0.02, 'E'}};
+  for (const auto& [beyond_m, letter] : known) {
+    Bench bench;
+    bench.trial.events.push_back(
+        {1.0,
+         "drilled",
+         {{"channel",
+           {{"worst",
+             {{"beyond_m", beyond_m}, {"depth_m", 0.012}, {"farthest_m", {0.001, -0.006}}}}}}}});
+    const Score score = bench.score("breach_class");
+    EXPECT_EQ(score.value, beyond_m);
+    EXPECT_EQ(score.note.substr(0, 8), std::string("class ") + letter + ":") << score.note;
+    EXPECT_NE(score.note.find("at depth 12 mm, inferior"), std::string::npos) << score.note;
+  }
+}
+
 TEST(Metrics, OfADrilledChannelHaveNoValueWhereTheEventIsNotUnderstood) {
   for (const core::Json& detail :
        {core::Json::object(), core::Json{{"channel", 7}, {"removed_m3", "much"}},
         core::Json{
-            {"channel", {{"entry_offset_m", {1}}, {"beyond_m", 3}, {"depth_m", nullptr}}}}}) {
+            {"channel",
+             {{"entry_offset_m", {1}}, {"beyond_m", 3}, {"depth_m", nullptr}, {"worst", 4}}}}}) {
     Bench bench;
     bench.trial.events.push_back({1.0, "drilled", detail});
     for (const char* id : {"drilled_volume", "channel_angle", "channel_entry_offset",
-                           "channel_beyond_end", "channel_breach"}) {
+                           "channel_beyond_end", "channel_breach", "breach_class"}) {
       EXPECT_FALSE(bench.score(id).value) << id << " " << detail;
       EXPECT_FALSE(bench.score(id).note.empty()) << id;
     }

@@ -62,6 +62,8 @@ class WallFinder {
   /// The wall at one depth. Errors: out_of_range (no bone within reach in that direction, bone
   /// never left within reach, or the volume ends first).
   core::Result<WallFound> wall_at(const Tract& tract, Wall wall, double at_m) const;
+  /// The same in any direction across the tract: 0 is medial, a quarter turn superior.
+  core::Result<WallFound> wall_towards(const Tract& tract, double angle_rad, double at_m) const;
 
   /// The thinnest place of a side wall along the pedicle: of the depths (every 0.5 mm, from 5 mm
   /// behind the first) where all four side walls begin within 12 mm of the axis, those that are at

@@ -111,6 +111,14 @@ core::Result<WallFound> WallFinder::wall_at(const Tract& tract, Wall wall, doubl
                    {.wall = wall, .at_m = at_m}, tract.radius_m);
 }
 
+core::Result<WallFound> WallFinder::wall_towards(const Tract& tract, double angle_rad,
+                                                 double at_m) const {
+  const math::Vec2 towards(std::cos(angle_rad), std::sin(angle_rad));
+  const Vec3 out = towards.x() * tract.medial + towards.y() * tract.superior;
+  return first_run(Bundle(tract.entry_m + at_m * tract.axis, out, tract.radius_m),
+                   {.wall = Tract::side_of(towards), .at_m = at_m}, tract.radius_m);
+}
+
 std::optional<WallFinder::Section> WallFinder::section_at(const Tract& tract, double at_m) const {
   Section section;
   for (std::size_t k = 0; k < section.size(); ++k) {

@@ -4,6 +4,7 @@
 
 #include "core/try.hpp"
 #include "db/store/studies/blinding.hpp"
+#include "db/store/trials/ratings.hpp"
 #include "db/store/trials/summary_row.hpp"
 
 namespace tractus {
@@ -59,6 +60,7 @@ core::Result<std::vector<CohortTrial>> CohortRows::read(Reading& tx, const std::
   if (rows.size() > static_cast<std::size_t>(limit))
     return core::Error{core::Errc::too_large, "the cohort has more than " + std::to_string(limit) +
                                                   " trials: choose one study"};
+  const auto ratings = TRY(rating_scores(tx));
   std::vector<CohortTrial> out;
   for (const Row& row : rows) {
     auto trial = TRY(trial_from(row));
@@ -66,6 +68,8 @@ core::Result<std::vector<CohortTrial>> CohortRows::read(Reading& tx, const std::
     auto scores = TRY(scores_of(tx, out.back().summary.id));
     for (const ScoreRecord& score : scores)
       if (score.value) out.back().metrics.emplace(score.metric_id, *score.value);
+    if (const auto rated = ratings.find(out.back().summary.id); rated != ratings.end())
+      out.back().metrics.insert(rated->second.begin(), rated->second.end());
   }
   return out;
 }

@@ -22,8 +22,9 @@ struct CohortTrial {
   std::int64_t number = 0;  ///< place in the participant's order, counted from 1
   std::optional<double> experience_years = {};
   std::optional<StudyTrialState> place = {};  ///< of a trial of a study
-  std::map<std::string, double> metrics;      ///< by id; metrics without a value are absent
-  std::string sha256;                         ///< SHA-256 of the object with the trial's file
+  /// By id, those without a value absent; and the ratings by people (rating_scores).
+  std::map<std::string, double> metrics;
+  std::string sha256;  ///< SHA-256 of the object with the trial's file
   bool blind = false;  ///< a blinded trial, which nobody may see yet (blinding.hpp)
 };
 

@@ -61,6 +61,12 @@ constexpr const char* kRows[] = {
     "'duration', 0, 3.5, 'n')",
     "insert into trial_metrics (trial_id, metric_id, position, value, note) values ('t', 'force', "
     "1, 0.1, 'n')",
+    "insert into rubrics (id, version, title, definition, reason, made_utc_us, made_by) values "
+    "('r', 1, 'rating', '{}', 'why', 1, 'ada')",
+    "insert into rating_requests (trial_id, rubric_id, version, blind, raters, made_utc_us, "
+    "made_by) values ('t', 'r', 1, 0, 2, 1, 'ada')",
+    "insert into ratings (trial_id, rubric_id, rater_id, number, scores, comment, reason, "
+    "independent, made_utc_us) values ('t', 'r', 'a', 1, '[3]', 'good', 'why', 1, 1)",
     "insert into criteria (kind, subject, version, definition, reason, made_utc_us, made_by) "
     "values "
     "('case', 'k', 1, '{}', 'why', 1, 'ada')",

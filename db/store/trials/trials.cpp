@@ -3,6 +3,7 @@
 #include "core/try.hpp"
 #include "db/store/rows.hpp"
 #include "db/store/studies/blinding.hpp"
+#include "db/store/trials/ratings.hpp"
 #include "db/store/trials/summary_row.hpp"
 
 namespace tractus {
@@ -56,8 +57,15 @@ std::string answer_sql(AnswerFilter answer) {
   return "";
 }
 
+/// A column that names the trainee; empty where the name is hidden from everybody else.
+std::string name_sql(const std::string& column, const TrialFilter& whose) {
+  if (!whose.seen_by.empty()) return column;
+  return "case when " + name_hidden_sql() + " then '' else " + column + " end";
+}
+
 /// " and …" for the trials of which a shown text contains `text`, in which % and _ are themselves.
-std::string text_sql(const std::string& text, std::vector<Value>& values) {
+std::string text_sql(const std::string& text, const TrialFilter& whose,
+                     std::vector<Value>& values) {
   if (text.empty()) return "";
   std::string pattern = "%";
   for (const char c : text) {
@@ -66,7 +74,9 @@ std::string text_sql(const std::string& text, std::vector<Value>& values) {
   }
   pattern += '%';
   std::string out;
-  for (const char* column : {"c.title", "s.name", "t.operator_name", kPersonColumn}) {
+  for (const std::string& column :
+       {std::string("c.title"), std::string("s.name"), name_sql("t.operator_name", whose),
+        name_sql(kPersonColumn, whose)}) {
     out += std::string(out.empty() ? " and (" : " or ") + "lower(" + column +
            ") like lower(?) escape '!'";
     values.emplace_back(pattern);
@@ -74,14 +84,14 @@ std::string text_sql(const std::string& text, std::vector<Value>& values) {
   return out + ")";
 }
 
-std::string order_sql(TrialOrder order) {
+std::string order_sql(TrialOrder order, const TrialFilter& whose) {
   switch (order) {
     case TrialOrder::started:
       return "t.started_utc_us";
     case TrialOrder::case_title:
       return "c.title";
     case TrialOrder::person:
-      return "coalesce(" + std::string(kPersonColumn) + ", t.operator_name)";
+      return name_sql("coalesce(" + std::string(kPersonColumn) + ", t.operator_name)", whose);
     case TrialOrder::station:
       return "s.name";
     case TrialOrder::duration:
@@ -125,12 +135,14 @@ core::Result<std::optional<TrialRecord>> trial_of(Reading& tx, const std::string
       TRY(tx.query(std::string("select ") + kSummaryColumns +
                        ", t.station_id, t.sha256, t.complete, t.late_ticks, t.not_converged, "
                        "t.skipped_ticks, t.header, t.events, t.failure, t.coverage, " +
-                       kPersonColumn + kFrom + "where t.id = ?",
+                       kPersonColumn + ", case when " + name_hidden_sql() + " then 1 else 0 end" +
+                       kFrom + "where t.id = ?",
                    {id}));
   if (rows.empty()) return std::optional<TrialRecord>();
   const Row& row = rows.front();
   auto summary = TRY(summary_from(row));
   summary.person = row.text_or_null(21).value_or("");
+  summary.name_hidden = row.truth(22);
   return std::optional(TrialRecord{.summary = std::move(summary),
                                    .station_id = row.text(11),
                                    .sha256 = row.text(12),
@@ -162,12 +174,14 @@ core::Result<FoundTrials> find_trials(Reading& tx, const TrialSearch& search,
   std::vector<Value> values{search.before_utc_us};
   std::string where = "where t.started_utc_us < ?" + reached_sql(whose, values);
   where += answer_sql(search.answer);
-  where += text_sql(search.text, values);
+  where += text_sql(search.text, whose, values);
   auto counted = TRY(tx.query_with(std::string("select count(*)") + kFrom + where, values));
   values.insert(values.end(), {search.limit, search.offset});
   const std::string way = search.ascending ? " asc" : " desc";
-  auto rows = TRY(tx.query_with(std::string("select ") + kSummaryColumns + ", " + kPersonColumn +
-                                    kFrom + where + " order by " + order_sql(search.order) + way +
+  auto rows = TRY(tx.query_with(std::string("select ") + kSummaryColumns + ", " +
+                                    name_sql(kPersonColumn, whose) + ", " +
+                                    name_sql("t.operator_name", whose) + kFrom + where +
+                                    " order by " + order_sql(search.order, whose) + way +
                                     ", t.started_utc_us desc, t.id desc limit ? offset ?",
                                 values));
   FoundTrials out;
@@ -175,6 +189,7 @@ core::Result<FoundTrials> find_trials(Reading& tx, const TrialSearch& search,
   for (const Row& row : rows) {
     auto summary = TRY(summary_from(row));
     summary.person = row.text_or_null(11).value_or("");
+    summary.operator_name = row.text(12);
     out.trials.push_back(std::move(summary));
   }
   return out;

@@ -27,6 +27,9 @@ struct TrialSummary {
   /// Name of the account to which the trial was assigned, else empty; filled by `find_trials` and
   /// `trial_of` alone.
   std::string person = {};
+  /// Whether those who rate the trial may not see its trainee's name yet (ratings.hpp); filled by
+  /// `trial_of` alone, while `find_trials` leaves such names empty.
+  bool name_hidden = false;
 };
 
 /// A trial as it was committed. Texts `header` and `events` are JSON.
@@ -94,7 +97,8 @@ struct FoundTrials {
   std::vector<TrialSummary> trials;
   std::uint64_t total = 0;  ///< that the search matches, whatever part of them this is
 };
-/// Without those that are blind (blinding.hpp).
+/// Without those that are blind (blinding.hpp). A name that is hidden is neither told nor found,
+/// but to the trainee.
 core::Result<FoundTrials> find_trials(Reading& tx, const TrialSearch& search,
                                       const TrialFilter& whose);
 

@@ -7,6 +7,7 @@
 #include "core/csv.hpp"
 #include "core/try.hpp"
 #include "db/store/people/accounts.hpp"
+#include "db/store/trials/ratings.hpp"
 #include "metrics/metric.hpp"
 
 namespace tractus {
@@ -173,7 +174,8 @@ std::string scores_csv(const store::ReleasedTrials& trials) {
   std::string out = "trial,score,value,unit\r\n";
   for (const store::ReleasedTrial& t : trials.all())
     for (const auto& [id, value] : t.metrics)
-      out += fmt::format("{},{},{},{}\r\n", t.id, cell(id), value, cell(units[id]));
+      out += fmt::format("{},{},{},{}\r\n", t.id, cell(id), value,
+                         cell(id.starts_with(store::kRatingScore) ? "1" : units[id]));
   return out;
 }
 
@@ -210,6 +212,9 @@ std::string dictionary_csv() {
   for (const auto& metric : metrics::all())
     out += fmt::format("scores,{},number,{},{}\r\n", cell(metric.id), cell(metric.unit),
                        cell(metric.definition));
+  out +=
+      fmt::format("scores,{}RUBRIC_vVERSION,number,1,{}\r\n", store::kRatingScore,
+                  cell("rating by people: mean over the raters of the sum of the items' scores"));
   add(kPalpation);
   add(kProbing);
   return out;

@@ -22,9 +22,10 @@ std::vector<Field> summary_fields() {
       {"case_title", text("Title of the case or scenario")},
       {"station", text("Name of the station")},
       {"operator_name",
-       text("Name of the person who did the trial; for a simulated hand a name that states so")},
+       text("Name of the person who did the trial; for a simulated hand a name that states so; "
+            "empty while the trial is rated blind")},
       {"person", text("Name of the account to which the trial was assigned; empty if it belongs to "
-                      "no assignment")},
+                      "no assignment, or while the trial is rated blind")},
       {"simulated", truth("True if a simulated device replaced hand and machine")},
       {"started_utc_us", integer("us", "Start of the trial, in microseconds since 1970-01-01 UTC")},
       {"duration_s", number("s", "Time from the first to the last sample, in seconds")},

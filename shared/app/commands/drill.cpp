@@ -12,6 +12,7 @@
 #include "core/file.hpp"
 #include "core/try.hpp"
 #include "drilling/channel.hpp"
+#include "metrics/breach_class.hpp"
 #include "volume/volume_file.hpp"
 
 namespace tractus {
@@ -144,6 +145,10 @@ void print_channel(const drilling::PilotHole& made, const volume::Tract& tract) 
       fmt::print("{:>9}: within the bone, {:.1f} mm to its outer face\n", volume::name(wall),
                  -*beyond * 1e3);
   }
+  if (made.worst)
+    fmt::print("Gertzbein-Robbins class {}: farthest {:+.1f} mm beyond the cortex, at {:.0f} mm\n",
+               name(metrics::breach_class_of(made.worst->beyond_m)), made.worst->beyond_m * 1e3,
+               made.worst->depth_m * 1e3);
 }
 
 Outcome report(const DrillOptions& o) {

@@ -1,6 +1,8 @@
 #include "statistics/agreement/icc.hpp"
 
 #include <cmath>
+#include <tuple>
+#include <utility>
 
 #include "core/try.hpp"
 #include "statistics/distributions/distributions.hpp"
@@ -9,8 +11,8 @@ namespace tractus {
 namespace statistics {
 namespace {
 
-/// Of ICC(2,1): Satterthwaite's df for the mixed error, McGraw & Wong 1996.
-Interval agreement_interval(const Icc& o, double n, double k) {
+/// Of ICC(2,1), then of ICC(2,k): Satterthwaite's df for the mixed error, McGraw & Wong 1996.
+std::pair<Interval, Interval> agreement_intervals(const Icc& o, double n, double k) {
   const double a = k * o.icc2 / (n * (1.0 - o.icc2));
   const double b = 1.0 + k * o.icc2 * (n - 1.0) / (n * (1.0 - o.icc2));
   const double mixed = a * o.ms_columns + b * o.ms_error;
@@ -20,8 +22,10 @@ Interval agreement_interval(const Icc& o, double n, double k) {
   const double down = f_quantile_upper(0.025, n - 1.0, df);
   const double up = f_quantile_upper(0.025, df, n - 1.0);
   const double error = k * o.ms_columns + (k * n - k - n) * o.ms_error;
-  return {n * (o.ms_rows - down * o.ms_error) / (down * error + n * o.ms_rows),
-          n * (up * o.ms_rows - o.ms_error) / (error + n * up * o.ms_rows)};
+  const double of_mean = o.ms_columns - o.ms_error;
+  const double low = n * (o.ms_rows - down * o.ms_error), high = n * (up * o.ms_rows - o.ms_error);
+  return {{low / (down * error + n * o.ms_rows), high / (error + n * up * o.ms_rows)},
+          {low / (down * of_mean + n * o.ms_rows), high / (of_mean + n * up * o.ms_rows)}};
 }
 
 /// Of (F − 1)/(F + k − 1) where F has df1, df2.
@@ -64,7 +68,7 @@ core::Result<Icc> icc(const Matrix& values) {
   o.p23 = f_upper(o.f23, df1, error_df);
   o.icc1_95 = ratio_interval(o.f1, df1, within_df, k);
   o.icc3_95 = ratio_interval(o.f23, df1, error_df, k);
-  o.icc2_95 = agreement_interval(o, n, k);
+  std::tie(o.icc2_95, o.icc2k_95) = agreement_intervals(o, n, k);
   o.sem_agreement = std::sqrt(o.ms_within);
   o.sem_consistency = std::sqrt(o.ms_error);
   o.mdc95_consistency = normal_quantile(0.975) * std::sqrt(2.0) * o.sem_consistency;

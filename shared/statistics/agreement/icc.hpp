@@ -1,6 +1,6 @@
 /// Reliability: how much of the spread between measurements is between subjects.
 ///
-/// Shrout & Fleiss 1979; intervals after McGraw & Wong 1996.
+/// Shrout & Fleiss 1979 [Shrout1979]; intervals after McGraw & Wong 1996 [McGraw1996].
 #pragma once
 
 #include "statistics/distributions/proportions.hpp"
@@ -13,6 +13,7 @@ struct Icc {
   double icc1 = 0.0, icc2 = 0.0, icc3 = 0.0;     ///< of one measurement
   double icc1k = 0.0, icc2k = 0.0, icc3k = 0.0;  ///< of the mean of all k
   Interval icc1_95, icc2_95, icc3_95;
+  Interval icc2k_95;
   double f1 = 0.0, p1 = 0.0, f23 = 0.0, p23 = 0.0;  ///< tests of no spread between subjects
   double sem_agreement = 0.0;      ///< √(MS_within): includes drift over repetitions
   double sem_consistency = 0.0;    ///< √(MS_error)

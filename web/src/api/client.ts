@@ -126,16 +126,18 @@ async function sendOnce(path: string, request: Request): Promise<Response> {
     );
   }
   if (response.ok) return response;
-  const failure = v.safeParse(errorSchema, await response.json().catch(() => undefined));
-  const text = failure.success
-    ? withoutPointer(failure.output.error)
-    : `The server answered with status ${response.status}.`;
+  throw failureOf(response.status, await response.json().catch(() => undefined), response.headers.get('Retry-After'));
+}
+
+/** What a refusal says. */
+function failureOf(status: number, json: unknown, retryAfter: string | null = null): ApiError {
+  const failure = v.safeParse(errorSchema, json);
+  const text = failure.success ? withoutPointer(failure.output.error) : `The server answered with status ${status}.`;
   const needsCode = failure.success && failure.output.code === 'code_needed';
-  const retryAfter = response.headers.get('Retry-After');
-  throw new ApiError(
-    needsCode ? 'code_needed' : codeOf(response.status),
+  return new ApiError(
+    needsCode ? 'code_needed' : codeOf(status),
     text,
-    response.status,
+    status,
     retryAfter === null ? null : Number(retryAfter),
   );
 }
@@ -147,12 +149,51 @@ export async function requestJson<Schema extends v.GenericSchema>(
   request: Request = {},
 ): Promise<v.InferOutput<Schema>> {
   const response = await send(path, request);
-  const json: unknown = await response.json().catch(() => undefined);
+  return read(schema, await response.json().catch(() => undefined));
+}
+
+function read<Schema extends v.GenericSchema>(schema: Schema, json: unknown): v.InferOutput<Schema> {
   const parsed = v.safeParse(schema, json);
   if (parsed.success) return parsed.output;
   const [issue] = parsed.issues;
   const where = v.getDotPath(issue) ?? 'answer';
   throw new ApiError('unreadable', `The server's answer cannot be read: ${where}: ${issue.message}`);
+}
+
+/** Sends a file and says what share of it has gone: fetch does not tell. */
+export function sendFile<Schema extends v.GenericSchema>(
+  path: string,
+  schema: Schema,
+  file: Blob,
+  onShare: (share: number) => void,
+): Promise<v.InferOutput<Schema>> {
+  return new Promise((resolve, reject) => {
+    const wire = new XMLHttpRequest();
+    wire.open('POST', kRoot + path);
+    wire.setRequestHeader('Accept', 'application/json');
+    wire.setRequestHeader('Content-Type', 'application/octet-stream');
+    wire.setRequestHeader('X-Tractus', '1');
+    wire.upload.onprogress = ({ loaded, total }) => onShare(total > 0 ? loaded / total : 0);
+    wire.onerror = () =>
+      reject(new ApiError('unreachable', 'The connection broke before the file was there. Send it again.'));
+    wire.onload = () => {
+      let json: unknown;
+      try {
+        json = JSON.parse(wire.responseText);
+        if (wire.status >= 200 && wire.status < 300) {
+          resolve(read(schema, json));
+          return;
+        }
+      } catch (reason) {
+        if (reason instanceof ApiError) {
+          reject(reason);
+          return;
+        }
+      }
+      reject(failureOf(wire.status, json));
+    };
+    wire.send(file);
+  });
 }
 
 export async function request(path: string, request: Request): Promise<void> {

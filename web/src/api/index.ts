@@ -1,6 +1,6 @@
 export { onSessionEnd, resumeRequests } from './session-end';
 export { ApiError, type ApiErrorCode } from './client';
-export type { Preview } from './preview';
+export { boundsOf, type Preview } from './preview';
 export * from './queries';
 export type * from './schemas';
 export { personOf } from './schemas';
@@ -27,3 +27,6 @@ export * from './class-queries';
 export * from './sign-in-card';
 export * from './criteria-queries';
 export type * from './criteria-schemas';
+export * from './rating-queries';
+export type * from './rating-schemas';
+export * from './volume-queries';

@@ -1,5 +1,6 @@
 /** The bone round the tract as a small block of opacities, described by headers. */
 import { ApiError } from './client';
+import type { Vec3 } from './slices';
 
 export interface Preview {
   readonly dims: readonly [number, number, number];
@@ -40,4 +41,25 @@ export function parsePreview(headers: Headers, opacity: Uint8Array<ArrayBuffer>)
     directions: numbers(headers, 'X-Directions', 9),
     opacity,
   };
+}
+
+/** Corners of the box of the voxel centres along the patient's axes. */
+export function boundsOf({
+  dims,
+  spacing_m,
+  origin_m,
+  directions: d,
+}: Pick<Preview, 'dims' | 'spacing_m' | 'origin_m' | 'directions'>): { low: Vec3; high: Vec3 } {
+  const low = [Infinity, Infinity, Infinity],
+    high = [-Infinity, -Infinity, -Infinity];
+  for (let corner = 0; corner < 8; ++corner) {
+    for (const row of [0, 1, 2] as const) {
+      let at = origin_m[row];
+      for (const i of [0, 1, 2] as const)
+        at += (corner >> i) & 1 ? (d[3 * row + i] ?? 0) * (dims[i] - 1) * spacing_m[i] : 0;
+      low[row] = Math.min(low[row] ?? 0, at);
+      high[row] = Math.max(high[row] ?? 0, at);
+    }
+  }
+  return { low: [low[0] ?? 0, low[1] ?? 0, low[2] ?? 0], high: [high[0] ?? 0, high[1] ?? 0, high[2] ?? 0] };
 }

@@ -1,6 +1,6 @@
 /** What the server may say, checked once as it comes in. Everything behind this file is typed and trusted. */
 import * as v from 'valibot';
-import { share } from '@/units';
+import { kNone, share } from '@/units';
 import { count, finite, inMetres, inNewtons, inSeconds, inUtc } from './quantities';
 
 /** Three numbers of the patient's frame. */
@@ -175,9 +175,9 @@ export const forceDepthSchema = v.pipe(
 
 export type Session = v.InferOutput<typeof sessionSchema>;
 export type TrialState = v.InferOutput<typeof trialStateSchema>;
-/** The person who did a trial, by the name of the account where it is known. */
+/** The person who did a trial, by the name of the account where it is known; a dash while the trial is rated blind. */
 export const personOf = ({ person, operator_name }: Pick<TrialSummary, 'person' | 'operator_name'>): string =>
-  person === '' ? operator_name : person;
+  person || operator_name || kNone;
 export type TrialSummary = v.InferOutput<typeof trialSummarySchema>;
 export type TrialPage = v.InferOutput<typeof trialPageSchema>;
 export type Metric = v.InferOutput<typeof metricSchema>;

@@ -8,6 +8,7 @@ import type {
   expertBoundSchema,
   passingSchema,
 } from './criteria-schemas';
+import type { agreementSchema, ratingRequestListSchema, rubricListSchema, trialRatingsSchema } from './rating-schemas';
 import type {
   assignmentListSchema,
   assignmentSchema,
@@ -45,6 +46,10 @@ export interface TeachingAgreed {
   readonly bound: Takes<typeof expertBoundSchema, Served['ExpertBound']>;
   readonly curricula: Takes<typeof curriculaSchema, Served['Curricula']>;
   readonly curriculumPeople: Takes<typeof curriculumPeopleSchema, Served['CurriculumPeople']>;
+  readonly rubrics: Takes<typeof rubricListSchema, Served['RubricList']>;
+  readonly ratings: Takes<typeof trialRatingsSchema, Served['TrialRatings']>;
+  readonly ratingRequests: Takes<typeof ratingRequestListSchema, Served['RatingRequestList']>;
+  readonly agreement: Takes<typeof agreementSchema, Served['RatingAgreements']>;
   readonly volumes: Takes<typeof sourceVolumeListSchema, Served['VolumeList']>;
 }
 
@@ -66,5 +71,9 @@ export const kTeachingAgreed: TeachingAgreed = {
   bound: true,
   curricula: true,
   curriculumPeople: true,
+  rubrics: true,
+  ratings: true,
+  ratingRequests: true,
+  agreement: true,
   volumes: true,
 };

@@ -11,11 +11,22 @@ export const sourceVolumeSchema = v.object({
   id: v.string(),
   name: v.string(),
   source: v.string(),
-  state: v.string(),
+  state: v.picklist(['held', 'released', 'refused']),
+  format: v.string(),
+  modality: v.nullable(v.string()),
   dims: v.tuple([count, count, count]),
   spacing_m: point,
+  origin_m: point,
+  directions: v.array(finite),
+  range: v.tuple([finite, finite]),
+  notes: v.array(v.string()),
+  suspicions: v.array(v.string()),
+  size_bytes: count,
   made_utc_us: inUtc,
   made_by: v.string(),
+  released_by: v.nullable(v.string()),
+  decided_utc_us: v.nullable(inUtc),
+  reason: v.string(),
 });
 export const sourceVolumeListSchema = v.object({ volumes: v.array(sourceVolumeSchema) });
 

@@ -45,3 +45,23 @@ export function onPlane(picture: SlicePicture, x: number, y: number): Vec3 {
     scaled(picture.alongColumn, (y - 0.5) * picture.spacing_m[1]),
   );
 }
+
+const kLetters = [
+  ['R', 'L'],
+  ['A', 'P'],
+  ['I', 'S'],
+] as const;
+
+/** The side of the patient that lies at an edge of the picture: R, L, A, P, S or I, of LPS the nearest. */
+export function letterAt(
+  { alongRow, alongColumn }: Pick<SlicePicture, 'alongRow' | 'alongColumn'>,
+  edge: 'left' | 'right' | 'top' | 'bottom',
+): string {
+  const along = edge === 'left' || edge === 'right' ? alongRow : alongColumn;
+  const ahead = edge === 'right' || edge === 'bottom';
+  const axis = ([0, 1, 2] as const).reduce<0 | 1 | 2>(
+    (most, i) => (Math.abs(along[i]) > Math.abs(along[most]) ? i : most),
+    0,
+  );
+  return kLetters[axis][along[axis] > 0 === ahead ? 1 : 0];
+}

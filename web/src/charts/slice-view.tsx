@@ -1,6 +1,6 @@
 import { useEffect, useId, useRef, type KeyboardEvent, type PointerEvent } from 'react';
 import { formatLength, metre } from '@/units';
-import { onPlane, onSlice, type SlicePicture, type SliceMark } from './slice-places';
+import { letterAt, onPlane, onSlice, type SlicePicture, type SliceMark } from './slice-places';
 import type { Vec3 } from './scene/types';
 import styles from './slice-view.module.css';
 
@@ -11,6 +11,8 @@ interface Props {
   readonly picture: SlicePicture | null;
   /** The one shown is not the one asked for yet. */
   readonly late: boolean;
+  /** How much larger than its place the picture is; scrolled where it is larger. */
+  readonly zoom?: number;
   readonly at_m: number;
   readonly from_m: number;
   readonly to_m: number;
@@ -43,7 +45,20 @@ function paint(canvas: HTMLCanvasElement, { width, height, pixels }: SlicePictur
 }
 
 /** A plane of a volume with marks that can be clicked, dragged and moved by keys. */
-export function SliceView({ name, picture, late, at_m, from_m, to_m, ends, marks, chosen, onAt, onPlace }: Props) {
+export function SliceView({
+  name,
+  picture,
+  late,
+  zoom = 1,
+  at_m,
+  from_m,
+  to_m,
+  ends,
+  marks,
+  chosen,
+  onAt,
+  onPlace,
+}: Props) {
   const canvas = useRef<HTMLCanvasElement>(null);
   const drawing = useRef<SVGSVGElement>(null);
   const dragged = useRef<string | null>(null);
@@ -108,67 +123,84 @@ export function SliceView({ name, picture, late, at_m, from_m, to_m, ends, marks
         <span className={styles.at}>{formatLength(metre(at_m))}</span>
       </div>
       <div className={styles.frame}>
-        <canvas ref={canvas} className={styles.picture} aria-hidden="true" hidden={picture === null} />
-        {picture ? (
-          <svg
-            ref={drawing}
-            className={styles.drawing}
-            viewBox={`0 0 ${picture.width} ${picture.height}`}
-            role="application"
-            aria-roledescription="slice"
-            aria-label={`${name} slice. Click or drag places the ${chosen}; arrow keys move it by half a millimetre, with Shift by a tenth; Page Up and Page Down change the slice.`}
-            tabIndex={0}
-            onKeyDown={onKeyDown}
-            onPointerDown={begin}
-            onPointerMove={move}
-            onPointerUp={end}
-            onPointerCancel={() => {
-              dragged.current = null;
-            }}
-          >
-            {marks.map((mark) => {
-              const here = onSlice(picture, mark.at),
-                there = mark.to ? onSlice(picture, mark.to) : null;
-              const far = Math.abs(here.off_m) > kFar_m;
-              return there ? (
-                <line
-                  key={mark.id}
-                  className={styles[mark.look]}
-                  x1={here.x}
-                  y1={here.y}
-                  x2={there.x}
-                  y2={there.y}
-                  strokeWidth={(mark.wide ?? 0.6) * scale}
-                />
-              ) : (
-                <g
-                  key={mark.id}
-                  className={styles[mark.look]}
-                  data-mark={mark.fixed ? undefined : mark.id}
-                  data-far={far || undefined}
-                  data-chosen={mark.id === chosen || undefined}
-                >
-                  <circle className={styles.grip} cx={here.x} cy={here.y} r={3.4 * scale} />
-                  <circle className={styles.dot} cx={here.x} cy={here.y} r={1.5 * scale} strokeWidth={0.6 * scale} />
-                  {mark.text === undefined ? null : (
-                    <text
-                      x={here.x + 2.6 * scale}
-                      y={here.y - 2 * scale}
-                      fontSize={4.2 * scale}
-                      strokeWidth={0.9 * scale}
+        <div className={styles.window}>
+          <div className={styles.inner} style={{ width: `${100 * zoom}%`, height: `${100 * zoom}%` }}>
+            <canvas ref={canvas} className={styles.picture} aria-hidden="true" hidden={picture === null} />
+            {picture ? (
+              <svg
+                ref={drawing}
+                className={styles.drawing}
+                viewBox={`0 0 ${picture.width} ${picture.height}`}
+                role="application"
+                aria-roledescription="slice"
+                aria-label={`${name} slice. Click or drag places the ${chosen}; arrow keys move it by half a millimetre, with Shift by a tenth; Page Up and Page Down change the slice.`}
+                tabIndex={0}
+                onKeyDown={onKeyDown}
+                onPointerDown={begin}
+                onPointerMove={move}
+                onPointerUp={end}
+                onPointerCancel={() => {
+                  dragged.current = null;
+                }}
+              >
+                {marks.map((mark) => {
+                  const here = onSlice(picture, mark.at),
+                    there = mark.to ? onSlice(picture, mark.to) : null;
+                  const far = Math.abs(here.off_m) > kFar_m;
+                  return there ? (
+                    <line
+                      key={mark.id}
+                      className={styles[mark.look]}
+                      x1={here.x}
+                      y1={here.y}
+                      x2={there.x}
+                      y2={there.y}
+                      strokeWidth={(mark.wide ?? 0.6) * scale}
+                    />
+                  ) : (
+                    <g
+                      key={mark.id}
+                      className={styles[mark.look]}
+                      data-mark={mark.fixed ? undefined : mark.id}
+                      data-far={far || undefined}
+                      data-chosen={mark.id === chosen || undefined}
                     >
-                      {mark.text}
-                    </text>
-                  )}
-                </g>
-              );
-            })}
-          </svg>
-        ) : (
-          <p className={styles.waiting} role="status">
-            Loading…
-          </p>
-        )}
+                      <circle className={styles.grip} cx={here.x} cy={here.y} r={3.4 * scale} />
+                      <circle
+                        className={styles.dot}
+                        cx={here.x}
+                        cy={here.y}
+                        r={1.5 * scale}
+                        strokeWidth={0.6 * scale}
+                      />
+                      {mark.text === undefined ? null : (
+                        <text
+                          x={here.x + 2.6 * scale}
+                          y={here.y - 2 * scale}
+                          fontSize={4.2 * scale}
+                          strokeWidth={0.9 * scale}
+                        >
+                          {mark.text}
+                        </text>
+                      )}
+                    </g>
+                  );
+                })}
+              </svg>
+            ) : (
+              <p className={styles.waiting} role="status">
+                Loading…
+              </p>
+            )}
+          </div>
+        </div>
+        {picture
+          ? (['left', 'right', 'top', 'bottom'] as const).map((edge) => (
+              <span key={edge} className={`${styles.letter} ${styles[edge]}`} aria-hidden="true">
+                {letterAt(picture, edge)}
+              </span>
+            ))
+          : null}
       </div>
       <label className={styles.slider}>
         <span className="hidden-visually">

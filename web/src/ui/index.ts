@@ -5,6 +5,7 @@ export { Button } from './button';
 export { Card } from './card';
 export { DataTable, Pages, SortHead, type DataColumn } from './data-table';
 export { ReasonDialog } from './dialog';
+export { DropZone, type Dropped } from './drop-zone';
 export { Facts, type Fact } from './facts';
 export { Field } from './field';
 export { Notice } from './notice';

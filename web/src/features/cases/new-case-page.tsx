@@ -2,6 +2,7 @@ import { useQuery } from '@tanstack/react-query';
 import { useEffect, useReducer, useState } from 'react';
 import { Link, useSearch } from 'wouter';
 import {
+  boundsOf,
   plannedTractQuery,
   sourceVolumesQuery,
   volumeBoneQuery,
@@ -19,7 +20,7 @@ import { PlannedCertificate } from './certificate';
 import { BreachFields, PointFields } from './fields';
 import { Make } from './make';
 import { draw, fromAddress, toAddress, requestOf, type End, type Plan } from './plan';
-import { boundsOf, Slices } from './slices';
+import { Slices } from './slices';
 import { Walls } from './walls';
 
 const kWindows: Record<string, { readonly text: string; readonly window: Window }> = {

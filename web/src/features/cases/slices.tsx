@@ -1,6 +1,6 @@
 import { useQuery } from '@tanstack/react-query';
 import { useMemo } from 'react';
-import { sliceQuery, type PlannedTract, type Preview, type SlicePlane, type Vec3, type Window } from '@/api';
+import { boundsOf, sliceQuery, type PlannedTract, type Preview, type SlicePlane, type Vec3, type Window } from '@/api';
 import { SliceView, type SliceMark } from '@/charts';
 import { Notice } from '@/ui';
 import styles from './cases.module.css';
@@ -12,22 +12,6 @@ const kPlanes: readonly { plane: SlicePlane; name: string; axis: 0 | 1 | 2; ends
   { plane: 'sagittal', name: 'Sagittal', axis: 0, ends: ['right', 'left'] },
 ];
 const kPitch_m = 0.0005;
-
-/** The corners of the block along the patient's axes. */
-export function boundsOf({ dims, spacing_m, origin_m, directions: d }: Preview): { low: Vec3; high: Vec3 } {
-  const low = [Infinity, Infinity, Infinity],
-    high = [-Infinity, -Infinity, -Infinity];
-  for (let corner = 0; corner < 8; ++corner) {
-    for (const row of [0, 1, 2] as const) {
-      let at = origin_m[row];
-      for (const i of [0, 1, 2] as const)
-        at += (corner >> i) & 1 ? (d[3 * row + i] ?? 0) * (dims[i] - 1) * spacing_m[i] : 0;
-      low[row] = Math.min(low[row] ?? 0, at);
-      high[row] = Math.max(high[row] ?? 0, at);
-    }
-  }
-  return { low: [low[0] ?? 0, low[1] ?? 0, low[2] ?? 0], high: [high[0] ?? 0, high[1] ?? 0, high[2] ?? 0] };
-}
 
 const add = (a: Vec3, b: Vec3, by: number): Vec3 => [a[0] + by * b[0], a[1] + by * b[1], a[2] + by * b[2]];
 

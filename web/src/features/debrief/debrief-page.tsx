@@ -19,9 +19,11 @@ import { Badge, Button, Card, Notice, Skeleton, usePalette, useTitle } from '@/u
 import { formatDateTime, formatDuration } from '@/units';
 import { byProgress, byTime, type Moments, type Way } from './align';
 import { Comments } from './comments';
+import { BreachCard } from './cross-section';
 import styles from './debrief.module.css';
 import { ExampleField, ReleaseField, type Choice } from './example';
 import { breaches, momentsOf } from './marks';
+import { Ratings } from './ratings';
 import { Timeline } from './timeline';
 import { Now, onPlayerKey, Transport } from './transport';
 import { usePlayer } from './use-player';
@@ -226,6 +228,7 @@ export function DebriefPage({ id }: { readonly id: string }) {
   const query = useQuery(trialQuery(id));
   const role = useQuery({ ...sessionQuery, enabled: false }).data?.role;
   const may = role === 'admin' || role === 'faculty';
+  const mayRate = may || role === 'director';
   const trial = query.data;
   useTitle(trial ? `Debrief: ${personOf(trial)}` : 'Debrief');
   const missing = query.error instanceof ApiError && query.error.code === 'not_found';
@@ -267,6 +270,8 @@ export function DebriefPage({ id }: { readonly id: string }) {
           <Verdict trial={trial} />
           <ReleaseField trial={trial} may={may} />
           <Replay trial={trial} may={may} />
+          <BreachCard trial={trial} />
+          <Ratings trial={trial.id} may={mayRate} />
         </>
       ) : null}
     </div>

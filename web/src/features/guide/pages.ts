@@ -82,6 +82,11 @@ export const kPages: readonly GuidePage[] = [
         to: { href: '/network/cohorts', name: 'Cohorts' },
       },
       {
+        title: 'Upload a volume',
+        text: 'A folder or a zip of one DICOM series, or a NIfTI or NRRD file. The server takes the patient’s identity out; a director or an administrator looks at the slices and releases the volume.',
+        to: { href: '/volumes', name: 'Volumes' },
+      },
+      {
         title: 'Create a case',
         text: 'Place the entry and the target of the tract in the slices of a CT. Choose the breached wall and the depth of the breach; the page shows the position of the breach and the thickness of the wall. Alternatively, let the trainee drill the channel and then palpate it. For the probing rig, define the layers and walls of a scenario.',
         to: { href: '/cases', name: 'Cases' },
@@ -101,6 +106,11 @@ export const kPages: readonly GuidePage[] = [
         text: 'Replay the trial: path of the tip in 3-D, forces, touched walls, force against depth, and an example trial as a ghost. When you point at a time in one chart, all others follow. You can add a comment at that time.',
         to: { href: '/trials', name: 'Trials' },
         picture: { name: 'faculty', shows: 'A palpation trial: signals, path of the tip in 3-D, touched walls' },
+      },
+      {
+        title: 'Rate a trial',
+        text: 'In the debriefing, have a trial rated by a rubric, by how many people, and whether the trainee’s name is hidden until all have rated. Nobody sees another’s rating before that. A submitted rating cannot be changed, only superseded with a reason.',
+        to: { href: '/ratings', name: 'Ratings' },
       },
     ],
     terms: [
@@ -137,6 +147,11 @@ export const kPages: readonly GuidePage[] = [
         title: 'Compare two cohorts',
         text: 'Choose two cohorts and press Compare. The test is chosen already; the result shows the difference with its interval, its size and every person as a point. It uses the trials of those who agreed to research.',
         to: { href: '/analysis', name: 'Analysis' },
+      },
+      {
+        title: 'Make a rubric',
+        text: 'Items with points, described at both ends and in the middle, or the global rating scale of OSATS to begin with. Faculty rate trials by it; the agreement of raters is shown beside it.',
+        to: { href: '/ratings/rubrics', name: 'Rubrics' },
       },
     ],
     terms: [

@@ -1,11 +1,10 @@
 import { useMutation, useQuery, useQueryClient } from '@tanstack/react-query';
 import { addMeasurements, measurementsQuery, type MeasurementSet } from '@/api';
-import { Badge, Card, Notice, Term } from '@/ui';
+import { Badge, Card, DropZone, Notice, Term, type Dropped } from '@/ui';
 import { formatCount, formatDateTime, isoDateTime } from '@/units';
-import { DropZone } from './drop-zone';
 import styles from './lab.module.css';
 import { setFacts } from './names';
-import { pack, problemsOf, type Dropped } from './zip-files';
+import { pack, problemsOf } from './zip-files';
 
 interface Props {
   readonly chosen: string | null;
@@ -84,6 +83,10 @@ export function SetsCard({ chosen, choose }: Props) {
     <Card title="1 · Measurements">
       <div className={styles.stack}>
         <DropZone
+          label="New measurements"
+          folder="A folder with set.json"
+          files="A zip file, or set.json with its CSV files"
+          choose="Choose zip file"
           onFiles={(files) => sent.mutate(files)}
           busy={sent.isPending ? 'Packing, uploading and checking the files…' : null}
         >

@@ -1,10 +1,7 @@
 /** Files that were dropped, as the one zip that the server takes. */
 import { zip, type AsyncZippable } from 'fflate';
+import type { Dropped } from '@/ui';
 
-export interface Dropped {
-  readonly path: string;
-  readonly file: File;
-}
 export interface Packed {
   readonly name: string;
   readonly zip: Uint8Array<ArrayBuffer>;

@@ -1,10 +1,21 @@
 import { useRef, type ReactNode } from 'react';
 import { useDropzone } from 'react-dropzone';
-import { Button } from '@/ui';
+import { Button } from './button';
 import styles from './drop-zone.module.css';
-import type { Dropped } from './zip-files';
+
+export interface Dropped {
+  readonly path: string;
+  readonly file: File;
+}
 
 interface Props {
+  /** What is brought: "New measurements". */
+  readonly label: string;
+  /** What a folder holds, and what may be chosen without one; for a screen reader. */
+  readonly folder: string;
+  readonly files: string;
+  /** Label of the button that chooses files. */
+  readonly choose: string;
   readonly onFiles: (files: readonly Dropped[]) => void;
   readonly busy: string | null;
   readonly children: ReactNode;
@@ -14,9 +25,9 @@ const pathOf = (file: File & { readonly path?: string; readonly relativePath?: s
   file.relativePath ?? file.path ?? (file.webkitRelativePath || file.name);
 const dropped = (files: readonly File[]): Dropped[] => files.map((file) => ({ path: pathOf(file), file }));
 
-/** A place for a folder or a zip: dragged here, or chosen by one of two buttons. */
-export function DropZone({ onFiles, busy, children }: Props) {
-  const folder = useRef<HTMLInputElement>(null);
+/** A place for a folder or a file: dragged here, or chosen by one of two buttons. */
+export function DropZone({ label, folder, files: named, choose, onFiles, busy, children }: Props) {
+  const folderInput = useRef<HTMLInputElement>(null);
   const { getRootProps, getInputProps, isDragActive, open } = useDropzone({
     onDrop: (files) => {
       if (files.length > 0) onFiles(dropped(files));
@@ -27,17 +38,17 @@ export function DropZone({ onFiles, busy, children }: Props) {
   });
   return (
     <div
-      {...getRootProps({ className: styles.zone, role: 'group', 'aria-label': 'New measurements' })}
+      {...getRootProps({ className: styles.zone, role: 'group', 'aria-label': label })}
       data-over={isDragActive || undefined}
       data-part="drop"
     >
-      <input {...getInputProps({ 'aria-label': 'A zip file, or set.json with its CSV files', tabIndex: -1 })} />
+      <input {...getInputProps({ 'aria-label': named, tabIndex: -1 })} />
       <input
-        ref={folder}
+        ref={folderInput}
         type="file"
         hidden
         webkitdirectory=""
-        aria-label="A folder with set.json"
+        aria-label={folder}
         onChange={(event) => {
           const files = [...(event.currentTarget.files ?? [])];
           event.currentTarget.value = '';
@@ -46,11 +57,11 @@ export function DropZone({ onFiles, busy, children }: Props) {
       />
       <p className={styles.text}>{busy ?? (isDragActive ? 'Release to add the files.' : children)}</p>
       <div className={styles.buttons}>
-        <Button onClick={() => folder.current?.click()} disabled={busy !== null}>
+        <Button onClick={() => folderInput.current?.click()} disabled={busy !== null}>
           Choose folder
         </Button>
         <Button onClick={open} disabled={busy !== null}>
-          Choose zip file
+          {choose}
         </Button>
       </div>
     </div>

@@ -1,0 +1,2 @@
+export { VolumePage } from './volume-page';
+export { VolumesPage } from './volumes-page';

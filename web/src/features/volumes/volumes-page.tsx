@@ -1,0 +1,139 @@
+import { useMutation, useQuery, useQueryClient } from '@tanstack/react-query';
+import { useState } from 'react';
+import { Link, useLocation } from 'wouter';
+import { addVolume, sourceVolumesQuery, type SourceVolume } from '@/api';
+import { Badge, Button, Card, DataTable, DropZone, Field, Notice, Progress, useTitle, type Dropped } from '@/ui';
+import { formatBytes, formatCount, formatDateTime, formatShare, share } from '@/units';
+import { nameFrom, pack } from './pack';
+import styles from './volumes.module.css';
+
+const kTones = { held: 'warn', released: 'good', refused: 'bad' } as const;
+export const kStates = { held: 'waits for review', released: 'released', refused: 'refused' } as const;
+
+function Upload() {
+  const client = useQueryClient();
+  const [, go] = useLocation();
+  const [files, setFiles] = useState<readonly Dropped[]>([]);
+  const [name, setName] = useState('');
+  const [source, setSource] = useState('');
+  const [gone, setGone] = useState<number | null>(null);
+  const sent = useMutation({
+    mutationFn: async () => {
+      setGone(null);
+      const file = await pack(files);
+      return addVolume(name.trim(), source.trim(), file, setGone);
+    },
+    onSuccess: async (made) => {
+      await client.invalidateQueries({ queryKey: sourceVolumesQuery.queryKey });
+      go(`/volumes/${made.id}`);
+    },
+  });
+  const size = files.reduce((sum, { file }) => sum + file.size, 0);
+  const phase =
+    gone === null
+      ? 'Packing the files…'
+      : gone < 1
+        ? `Uploading: ${formatShare(share(gone))} of the file`
+        : 'The server reads the volume and takes the patient’s identity out…';
+  return (
+    <Card title="Upload a volume">
+      <div className={styles.stack}>
+        <DropZone
+          label="New volume"
+          folder="A folder with the slices of one DICOM series"
+          files="A zip of one DICOM series, or a NIfTI, NRRD or .tvol file"
+          choose="Choose file"
+          busy={sent.isPending ? phase : null}
+          onFiles={(dropped) => {
+            setFiles(dropped);
+            setName(nameFrom(dropped));
+            sent.reset();
+          }}
+        >
+          {files.length === 0
+            ? 'Drop a CT here: a folder or a zip of one DICOM series, or a file in NIfTI (.nii, .nii.gz), NRRD or .tvol, zipped or not.'
+            : `${formatCount(files.length)} ${files.length === 1 ? 'file' : 'files'}, ${formatBytes(size)}`}
+        </DropZone>
+        {sent.isPending && gone !== null ? <Progress done={gone} of={1} label="Upload" /> : null}
+        {files.length > 0 ? (
+          <div className={styles.form}>
+            <Field
+              label="Name, without a patient’s name"
+              value={name}
+              maxLength={200}
+              onChange={(event) => setName(event.target.value)}
+            />
+            <Field
+              label="Origin and licence (optional)"
+              value={source}
+              maxLength={400}
+              onChange={(event) => setSource(event.target.value)}
+            />
+            <Button look="solid" disabled={name.trim() === '' || sent.isPending} onClick={() => sent.mutate()}>
+              Upload
+            </Button>
+          </div>
+        ) : null}
+        {sent.isError ? (
+          <Notice tone="bad" title="The volume was not taken.">
+            {sent.error.message}
+          </Notice>
+        ) : null}
+        <p className={styles.muted}>
+          The server removes what names a patient from the file. A director or administrator then looks at the pictures
+          and releases or refuses the volume.
+        </p>
+      </div>
+    </Card>
+  );
+}
+
+/** CT volumes of this server. */
+export function VolumesPage() {
+  useTitle('Volumes');
+  const query = useQuery(sourceVolumesQuery);
+  return (
+    <div className={styles.page}>
+      <div>
+        <h1>Volumes</h1>
+        <p className={styles.lead}>CT volumes from which cases are made. A volume is used after its release.</p>
+      </div>
+      {query.isError ? (
+        <Notice tone="bad" title="The volumes could not be loaded." onRetry={() => void query.refetch()}>
+          {query.error.message}
+        </Notice>
+      ) : null}
+      <Card title="Volumes">
+        <DataTable<SourceVolume>
+          address=""
+          caption="Volumes"
+          minWidth={640}
+          rows={query.data?.volumes}
+          keyOf={({ id }) => id}
+          empty="No volumes yet. Upload the first below."
+          filter={{ label: 'Filter by name or source', text: (one) => `${one.name} ${one.source}` }}
+          columns={[
+            {
+              name: 'Volume',
+              by: ({ name }) => name,
+              cell: ({ id, name }) => <Link href={`/volumes/${id}`}>{name}</Link>,
+            },
+            {
+              name: 'State',
+              by: ({ state }) => state,
+              cell: ({ state }) => <Badge tone={kTones[state]}>{kStates[state]}</Badge>,
+            },
+            { name: 'Source', by: ({ source }) => source, cell: ({ source }) => source },
+            { name: 'Voxels', cell: ({ dims }) => dims.map(formatCount).join(' × '), number: true },
+            {
+              name: 'Uploaded',
+              by: ({ made_utc_us }) => made_utc_us,
+              cell: ({ made_utc_us, made_by }) => `${formatDateTime(made_utc_us)} by ${made_by}`,
+            },
+          ]}
+        />
+      </Card>
+      <Upload />
+    </div>
+  );
+}
