@@ -11,6 +11,7 @@ import type {
 import type {
   assignmentListSchema,
   assignmentSchema,
+  releasedAssignmentsSchema,
   caseListSchema,
   commentListSchema,
   makingListSchema,
@@ -35,6 +36,7 @@ export interface TeachingAgreed {
   readonly scenarios: Takes<typeof scenarioListSchema, Served['ScenarioVersions']>;
   readonly check: Takes<typeof scenarioCheckSchema, Served['ScenarioCheck']>;
   readonly assignments: Takes<typeof assignmentListSchema, Served['Assignments']>;
+  readonly released: Takes<typeof releasedAssignmentsSchema, Served['ReleasedAssignments']>;
   readonly assignment: Takes<typeof assignmentSchema, Served['Assignment']>;
   readonly comments: Takes<typeof commentListSchema, Served['TrialComments']>;
   readonly references: Takes<typeof referenceListSchema, Served['ReferenceTrials']>;
@@ -56,6 +58,7 @@ export const kTeachingAgreed: TeachingAgreed = {
   scenarios: true,
   check: true,
   assignments: true,
+  released: true,
   assignment: true,
   comments: true,
   references: true,

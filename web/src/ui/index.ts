@@ -7,6 +7,8 @@ export { DataTable, Pages, SortHead, type DataColumn } from './data-table';
 export { ReasonDialog } from './dialog';
 export { Facts, type Fact } from './facts';
 export { Field } from './field';
+export { useList } from './list-state';
+export { ListTable, type ListColumn, type ListFilter } from './list-table';
 export { Notice } from './notice';
 export { Progress } from './progress';
 export { Scroll } from './scroll';
