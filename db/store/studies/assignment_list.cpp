@@ -16,7 +16,8 @@ std::vector<ListFilter> assignment_filters(const std::string& finished) {
   return {{"state",
            "Only assignments with trials still to be done (unfinished), or without (finished); for "
            "a trainee only the own trials count",
-           {{"unfinished", finished + " = 0"}, {"finished", finished + " = 1"}}},
+           // Not by an index: few columns' values are as common as these two.
+           {{"unfinished", finished + " + 0 = 0"}, {"finished", finished + " + 0 = 1"}}},
           {"release",
            "Only assignments whose results trainees see: held = not yet, released = now, at_once = "
            "as soon as a trial is uploaded",
