@@ -253,13 +253,13 @@ class Programme:
     def scored(self):
         """Every trial that was handed over has its scores, and none failed."""
         for _ in range(600):
-            states, before = [], 9 * 10**15
+            states, cursor = [], ""
             while True:
-                page = self.admin.ask("GET", f"/trials?limit=200&before_utc_us={before}")
+                page = self.admin.ask("GET", f"/trials?limit=200{cursor}")
                 states += [trial["state"] for trial in page["trials"]]
                 if not page["more"]:
                     break
-                before = page["trials"][-1]["started_utc_us"]
+                cursor = "&cursor=" + page["next"]
             if "assessing" not in states:
                 break
             time.sleep(0.5)

@@ -100,9 +100,9 @@ TEST_P(StoreFaults, ACommittedTrialIsWholeOrAbsent) {
     TRY(complete_upload(tx, kTrial));
     return queue_job(tx, JobKind::metrics, kTrial, 2);
   });
-  // begin, four statements, the trial's row read for its digest, the trail's end, its new row,
+  // begin, five statements, the trial's row read for its digest, the trail's end, its new row,
   // commit
-  EXPECT_EQ(steps, 9);
+  EXPECT_EQ(steps, 10);
 }
 
 TEST_P(StoreFaults, APublishedCaseIsWholeOrAbsent) {

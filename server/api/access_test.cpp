@@ -186,7 +186,10 @@ TEST_F(Access, ATraineeAndAStationReachTheseRoutesAlone) {
                                                          "trialReferences of own",
                                                          "referenceWay of own",
                                                          "ownConsent",
-                                                         "sayConsent"}));
+                                                         "sayConsent",
+                                                         "savedViews",
+                                                         "saveView",
+                                                         "removeView"}));
   EXPECT_EQ(reach[Role::station], (std::set<std::string>{"whoAmI",
                                                          "description",
                                                          "metrics",

@@ -25,6 +25,7 @@ std::string_view where(Parameter::In in) {
 core::Json schema_of(const Parameter& p) {
   if (p.kind == Parameter::Kind::text) {
     core::Json out{{"type", "string"}};
+    if (!p.values.empty()) out["enum"] = p.values;
     if (p.fallback) out["default"] = *p.fallback;
     return out;
   }

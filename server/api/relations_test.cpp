@@ -251,6 +251,8 @@ TEST_F(Relations, ARouteThatChangesSomethingNamesEveryEndOrIsOfOneObject) {
   const std::set<std::string> of_one_object{
       // the caller's own session, password and codes
       "signIn", "signOut", "changePassword", "beginCodes", "confirmCodes", "endCodes",
+      // the caller's own saved views
+      "saveView", "removeView",
       // an account, by administrators; a badge also by those who teach its bearer
       "addAccount", "setAccountState", "setAccountRole", "resetPassword", "setBadge", "linkSubject",
       // a cohort that its maker leads

@@ -87,8 +87,9 @@ struct Parameter {
   std::string unit;  ///< unit of a number; "" for a text
   std::string meaning;
   bool required = true;
-  double low = 0.0, high = 0.0;         ///< range of a number, inclusive
-  std::optional<std::string> fallback;  ///< default value of an optional argument
+  double low = 0.0, high = 0.0;              ///< range of a number, inclusive
+  std::optional<std::string> fallback = {};  ///< default value of an optional argument
+  std::vector<std::string> values = {};      ///< the only values of a text; empty: any text
 };
 Parameter path_text(std::string name, std::string meaning);
 

@@ -1,6 +1,7 @@
 #include "server/api/service.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cctype>
@@ -9,6 +10,7 @@
 
 #include "core/clock.hpp"
 #include "core/try.hpp"
+#include "core/words.hpp"
 #include "server/api/access.hpp"
 #include "server/api/audit_entry.hpp"
 #include "server/api/people/authentication.hpp"
@@ -61,7 +63,12 @@ bool is_number_within(std::string_view text, double low, double high) {
 }
 
 core::Result<void> check(const Parameter& p, const std::string& value) {
-  if (p.kind == Parameter::Kind::text) return {};
+  if (p.kind == Parameter::Kind::text) {
+    if (p.values.empty() || std::ranges::count(p.values, value) > 0) return {};
+    return core::Error{core::Errc::bad_input,
+                       fmt::format("{}: {} is expected, not '{}'", p.name,
+                                   fmt::join(p.values, ", "), core::one_line(value.substr(0, 64)))};
+  }
   const bool whole = p.kind == Parameter::Kind::integer;
   if (whole ? is_number_within<std::int64_t>(value, p.low, p.high)
             : is_number_within<double>(value, p.low, p.high))
@@ -87,11 +94,16 @@ std::optional<std::string> given(const Parameter& p, const Match& matched,
 }
 
 core::Result<void> check_query_is_declared(const RouteInfo& route, const http::RequestHead& head) {
+  std::vector<std::string> known;
+  for (const Parameter& p : route.parameters)
+    if (p.in == Parameter::In::query) known.push_back(p.name);
   for (const auto& [key, _] : head.query)
-    if (std::ranges::none_of(route.parameters, [&key = key](const Parameter& p) {
-          return p.in == Parameter::In::query && p.name == key;
-        }))
-      return core::Error{core::Errc::bad_input, key.substr(0, 64) + ": this parameter is unknown"};
+    if (std::ranges::count(known, key) == 0)
+      return core::Error{
+          core::Errc::bad_input,
+          fmt::format("{}: this parameter is unknown; {}", core::one_line(key.substr(0, 64)),
+                      known.empty() ? "this address takes none"
+                                    : fmt::format("allowed: {}", fmt::join(known, ", ")))};
   return {};
 }
 

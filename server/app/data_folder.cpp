@@ -127,7 +127,7 @@ core::Result<DataFolder> open_data(const fs::path& path, const Database& databas
 store::AuditedAction command_act(const std::string& command, const core::Json& detail) {
   const passwd* user = ::getpwuid(::geteuid());
   return {.who = fmt::format("command line: {}", user ? user->pw_name : "unknown"),
-          .role = "command line",
+          .role = store::kCommandLine,
           .peer = "",
           .what = command,
           .object = "",

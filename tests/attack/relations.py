@@ -14,11 +14,26 @@ def stranger_into_cohort(world):
     faculty, theirs = world.ours.faculty, world.theirs
     faculty.ask("POST", f"/cohorts/{world.ours.cohort}/people", {"name": f"{VICTIM} trainee"})
     seen = faculty.ask("GET", f"/trials/{theirs.trial}")
-    listed = faculty.ask("GET", "/trials?limit=500").body.decode()
+    listed = faculty.ask("GET", "/trials?limit=200").body.decode()
     expect(seen.status in (403, 404), f"the stranger's trial: {seen.status}")
     expect(theirs.trial not in listed, "the stranger's trial is in faculty's list")
     badge = faculty.ask("POST", f"/accounts/{theirs.ids()['account']}/badge", {"badge": "666", "pin": "6666"})
     expect(badge.status in (403, 404), f"the stranger's badge is set: {badge.status}")
+
+
+@attack("2: faculty and a trainee find strangers by searching, counting, or with an administrator's cursor")
+def stranger_by_search(world):
+    for person in (world.ours.faculty, world.ours.trainee):
+        for rows in ("trials", "assignments"):
+            found = person.must("GET", f"/{rows}?search={quoted(VICTIM)}&limit=200")
+            expect(found["total"] == 0 and found[rows] == [], f"{rows} of {VICTIM}: {found['total']} are counted")
+            cursor = world.admin.must("GET", f"/{rows}?limit=1")["next"] or ""
+            own = {row["id"] for row in person.must("GET", f"/{rows}?limit=200")[rows]}
+            behind = {row["id"] for row in person.must("GET", f"/{rows}?limit=200&cursor={cursor}")[rows]}
+            expect(behind <= own, f"{rows} behind an administrator's cursor: {behind - own}")
+    for secret in ("password_hash", "pseudonym", "id", "(select 1)"):
+        answer = world.admin.ask("GET", f"/accounts?sort={quoted(secret)}")
+        expect(answer.status == 400, f"accounts are sorted by {secret}: {answer.status}")
 
 
 @attack("2: faculty takes over a trainee of no cohort, sets badge and PIN, and signs in with them at a station")
@@ -225,7 +240,7 @@ def whole_of_theirs(world):
     out["stations"] = [one["revoked_utc_us"] for one in admin.must("GET", "/stations")["stations"] if VICTIM in one["name"]]
     out["ticket"] = theirs.next_slot()["slot"]
     out["session"] = theirs.trainee.ask("GET", "/session").status
-    out["trials that our faculty sees"] = theirs.trial in world.ours.faculty.ask("GET", "/trials?limit=500").body.decode()
+    out["trials that our faculty sees"] = theirs.trial in world.ours.faculty.ask("GET", "/trials?limit=200").body.decode()
     return out
 
 

@@ -153,7 +153,7 @@ class World:
 
     def wait_for_scores(self):
         end = time.monotonic() + 60
-        while any(trial["state"] == "assessing" for trial in self.admin.must("GET", "/trials?limit=500")["trials"]):
+        while any(trial["state"] == "assessing" for trial in self.admin.must("GET", "/trials?limit=200")["trials"]):
             if time.monotonic() > end:
                 raise RuntimeError("trials are not scored after 60 s")
             time.sleep(0.1)

@@ -74,13 +74,18 @@ TEST(Outage, ABacklogOfDaysIsHandedOverOnceAndInOrderThoughTheServerDies) {
   Client client;
   client.speak_to(server.port());
   const Headers admin = world.admin(client);
-  const core::Json list = client.ask("GET", "/api/v1/trials?limit=500", admin).json();
+  const core::Json list = client.ask("GET", "/api/v1/trials?limit=200", admin).json();
   ASSERT_EQ(list["trials"].size(), std::size_t(kTrials)) << "each of them, once";
-  const core::Json trail = client.ask("GET", "/api/v1/audit?limit=500", admin).json();
   std::vector<std::string> committed;
-  for (const core::Json& row : trail["rows"])
-    if (row["what"] == "commitUpload")
-      committed.push_back(row["object"].get<std::string>().substr(9));  // "trial_id=…"
+  for (std::string cursor, more = "first"; !more.empty();) {
+    const core::Json trail =
+        client.ask("GET", "/api/v1/audit?limit=200&search=commitUpload" + cursor, admin).json();
+    for (const core::Json& row : trail["rows"])
+      if (row["what"] == "commitUpload")
+        committed.push_back(row["object"].get<std::string>().substr(9));  // "trial_id=…"
+    more = core::text_member(trail, "next");
+    cursor = "&cursor=" + more;
+  }
   std::ranges::reverse(committed);
   committed.erase(std::unique(committed.begin(), committed.end()), committed.end());
   EXPECT_EQ(committed, ids) << "oldest first";

@@ -74,7 +74,7 @@ class Live : public ::testing::Test {
       if (one["name"] == station) return one["id"];
     return "";
   }
-  std::string audit_text() { return get("/audit?limit=500").dump(); }
+  std::string audit_text() { return get("/audit?limit=200").dump(); }
   std::string url() const { return "http://127.0.0.1:" + std::to_string(server_.port()); }
 
   ServedWorld world_;

@@ -100,12 +100,12 @@ class Lying : public ::testing::Test {
   /// Rows of the trail by this station whose detail says `word`.
   int rows_of(const std::string& station, const std::string& word) {
     int out = 0;
-    const core::Json trail = admin_sees("/audit?limit=500");
+    const core::Json trail = admin_sees("/audit?limit=200");
     for (const core::Json& row : trail["rows"])
       out += row["who"] == station && row["detail"].dump().find(word) != std::string::npos;
     return out;
   }
-  std::size_t trials() { return admin_sees("/trials?limit=500")["trials"].size(); }
+  std::size_t trials() { return admin_sees("/trials?limit=200")["trials"].size(); }
   void expect_chain_holds() { EXPECT_EQ(admin_sees("/audit/check")["holds"], true); }
 
   const ServedWorld world_;

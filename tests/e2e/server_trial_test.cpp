@@ -199,12 +199,8 @@ TEST(TrialList, GoesBackInTimePageByPage) {
   EXPECT_EQ(first["trials"][0]["id"], newest_first[0]);
   EXPECT_EQ(first["trials"][1]["id"], newest_first[1]);
   EXPECT_EQ(first["more"], true);
-  const auto rest = client
-                        .ask("GET",
-                             "/api/v1/trials?limit=2&before_utc_us=" +
-                                 first["trials"][1]["started_utc_us"].dump(),
-                             admin)
-                        .json();
+  const std::string next = first["next"];
+  const auto rest = client.ask("GET", "/api/v1/trials?limit=2&cursor=" + next, admin).json();
   ASSERT_EQ(rest["trials"].size(), 1u);
   EXPECT_EQ(rest["trials"][0]["id"], newest_first[2]);
   EXPECT_EQ(rest["more"], false);

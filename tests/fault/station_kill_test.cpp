@@ -118,8 +118,8 @@ class KilledStation {
     std::map<std::string, std::uint64_t> there;
     const auto admin = world_.admin(client);
     bool more = true;
-    for (std::string before; more;) {
-      const Answer list = client.ask("GET", "/api/v1/trials?limit=500" + before, admin);
+    for (std::string cursor; more;) {
+      const Answer list = client.ask("GET", "/api/v1/trials?limit=200" + cursor, admin);
       ASSERT_EQ(list.status, 200) << list.body;
       const auto trials = list.json()["trials"];
       for (const auto& trial : trials) {
@@ -128,9 +128,7 @@ class KilledStation {
         there[id] = trial["samples"].get<std::uint64_t>();
       }
       more = list.json()["more"].get<bool>();
-      if (more)
-        before =
-            "&before_utc_us=" + std::to_string(trials.back()["started_utc_us"].get<std::int64_t>());
+      if (more) cursor = "&cursor=" + list.json()["next"].get<std::string>();
     }
     EXPECT_EQ(there, here);
   }

@@ -73,11 +73,37 @@ core::Result<std::vector<std::string>> untried_cases(Reading& tx) {
   return out;
 }
 
-core::Result<std::vector<CaseSummary>> all_cases(Reading& tx) {
-  return all_of(
-      tx.query(std::string(kSummary) + "where c.kind = ? order by c.published_utc_us desc, c.id",
-               {name_value(trial::Rig::palpation)}),
-      case_from);
+const ListShape& case_list() {
+  using enum ColumnType;
+  const OrderColumn key{"c.id"};
+  static const ListShape kShape{
+      .from = "cases c",
+      .searched = "c.title || ' ' || c.source || ' ' || c.id",
+      .orders = {{"published", {{"c.published_utc_us", integer}, key}, true},
+                 {"title", {{"c.title"}, key}},
+                 {"source", {{"c.source"}, key}},
+                 {"made", {{"c.made_utc_us", integer}, key}, true}},
+      .filters = {
+          {"state",
+           "Only cases that new assignments can use (available), or cannot (retired)",
+           {{"available", "c.retired_utc_us is null"},
+            {"retired", "c.retired_utc_us is not null"}}},
+          {"channel",
+           "Only cases whose channel is there already (drilled), or which the trainee drills "
+           "(planned)",
+           {{"drilled", "c.planned = 0"}, {"planned", "c.planned = 1"}}},
+          {"felt", "Only cases of which the certificate says this", choices_of<Felt>("c.felt")}}};
+  return kShape;
+}
+
+core::Result<FoundCases> find_cases(Reading& tx, const ListRequest& request) {
+  const Reach palpation{.sql = " and coalesce(c.kind, '') = ?",  // a scan, not an index of an order
+                        .walked = " and c.kind = ?",
+                        .values = {name_value(trial::Rig::palpation)}};
+  auto found = TRY(find_keys(tx, case_list(), request, palpation));
+  const SqlPart select{std::string(kSummary) + "where c.id in"};
+  auto cases = TRY(all_of(rows_of_keys(tx, select, found.keys), case_from));
+  return FoundCases{std::move(cases), std::move(found.page)};
 }
 
 core::Result<std::optional<CaseSummary>> case_of(Reading& tx, const std::string& id) {

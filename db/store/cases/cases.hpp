@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "core/named.hpp"
+#include "db/store/finding/list.hpp"
 #include "db/store/store.hpp"
 #include "trial/trial.hpp"
 
@@ -47,8 +48,13 @@ struct CasePart {
 /// except the field `planned` of a case that an older version stored.
 core::Result<void> add_case(Writing& tx, const CaseSummary& summary,
                             const std::vector<CasePart>& parts, std::int64_t now_utc_us);
-/// The palpation cases, newest first; scenarios are never listed.
-core::Result<std::vector<CaseSummary>> all_cases(Reading& tx);
+/// The list of palpation cases (finding/list.hpp), in which scenarios never are: its orders and filters.
+const ListShape& case_list();
+struct FoundCases {
+  std::vector<CaseSummary> cases;
+  ListPage page;
+};
+core::Result<FoundCases> find_cases(Reading& tx, const ListRequest& request);
 core::Result<std::optional<CaseSummary>> case_of(Reading& tx, const std::string& id);
 /// Retires a case, or offers it again. Errors: not_found.
 core::Result<void> set_case_retired(Writing& tx, const std::string& id, bool retired,

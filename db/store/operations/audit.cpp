@@ -5,6 +5,7 @@
 
 #include "core/clock.hpp"
 #include "core/try.hpp"
+#include "db/store/people/role.hpp"
 
 namespace tractus {
 namespace store {
@@ -41,6 +42,14 @@ AuditRow row_from(const Row& row) {
            .at_utc_us = row.integer(1)},
           row.text(8),
           row.text(9)};
+}
+
+/// Every role, the command line and the server itself.
+std::vector<ListChoice> actors() {
+  auto out = choices_of<Role>("a.role");
+  for (const char* other : {kCommandLine, kServer})
+    out.push_back({other, std::string("a.role = '") + other + "'"});
+  return out;
 }
 
 core::Error broken(std::int64_t number, const std::string& why) {
@@ -109,6 +118,27 @@ core::Result<void> add_act(Writing& tx, const AuditKey& key, const AuditedAction
                {number, act.at_utc_us, act.who, act.role, act.peer, act.what, act.object,
                 act.detail, hash_of(key, end.hash, number, act, changes), changes}));
   return {};
+}
+
+const ListShape& audit_list() {
+  const OrderColumn key{"a.number", ColumnType::integer};
+  static const ListShape kShape{
+      .from = "audit a",
+      .searched = "a.who || ' ' || a.what || ' ' || a.object || ' ' || a.detail || ' ' || a.peer",
+      .orders = {{"number", {key}, true}, {"who", {{"a.who"}, key}}, {"what", {{"a.what"}, key}}},
+      .filters = {{"role", "Only rows of actors with this role", actors()}}};
+  return kShape;
+}
+
+core::Result<FoundAudit> find_audit(Reading& tx, const ListRequest& request) {
+  auto found = TRY(find_keys(tx, audit_list(), request));
+  const SqlPart select{
+      "select number, at_utc_us, who, role, peer, what, object, detail, hash, '' from audit where "
+      "number in"};
+  const auto rows = TRY(rows_of_keys(tx, select, found.keys));
+  FoundAudit out{{}, std::move(found.page)};
+  for (const Row& row : rows) out.rows.push_back(row_from(row));
+  return out;
 }
 
 core::Result<std::vector<AuditRow>> audit_before(Reading& tx, std::int64_t number,

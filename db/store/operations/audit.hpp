@@ -10,6 +10,7 @@
 #include <functional>
 #include <vector>
 
+#include "db/store/finding/list.hpp"
 #include "db/store/store.hpp"
 
 namespace tractus::store {
@@ -53,6 +54,13 @@ struct AuditRow {
   std::string changes;  ///< digests of the covered rows that changed (coverage.hpp); "" for none
 };
 
+/// The list of the trail's rows (finding/list.hpp): its orders and filters.
+const ListShape& audit_list();
+struct FoundAudit {
+  std::vector<AuditRow> rows;
+  ListPage page;
+};
+core::Result<FoundAudit> find_audit(Reading& tx, const ListRequest& request);
 /// Rows before `number`, newest first; at most `limit`.
 core::Result<std::vector<AuditRow>> audit_before(Reading& tx, std::int64_t number,
                                                  std::int64_t limit);
@@ -63,6 +71,7 @@ core::Result<void> add_act(Writing& tx, const AuditKey& key, const AuditedAction
 
 /// `who` and `role` for actions of the server itself, for example scoring a trial; and their names.
 inline constexpr const char* kServer = "server";
+inline constexpr const char* kCommandLine = "command line";
 inline constexpr const char* kServerWork = "serverWork";
 inline constexpr const char* kBeginCoverage = "beginCoverage";
 inline constexpr const char* kGoOnCoverage = "goOnCoverage";

@@ -117,6 +117,28 @@ core::Result<std::vector<Account>> all_accounts(Reading& tx) {
                 account_from);
 }
 
+const ListShape& account_list() {
+  const OrderColumn key{"a.id"}, name{"a.name"};
+  static const ListShape kShape{
+      .from = "accounts a",
+      .searched = "a.name || ' ' || coalesce(a.badge, '') || ' ' || a.level",
+      .orders = {{"name", {name, key}},
+                 {"role", {{"a.role"}, name, key}},
+                 {"level", {{"a.level"}, name, key}},
+                 {"made", {{"a.made_utc_us", ColumnType::integer}, key}, true}},
+      .filters = {{"role", "Only accounts with this role", choices_of<Role>("a.role")},
+                  {"state", "Only accounts in this state; a disabled account cannot sign in",
+                   choices_of<AccountState>("a.state")}}};
+  return kShape;
+}
+
+core::Result<FoundAccounts> find_accounts(Reading& tx, const ListRequest& request) {
+  auto found = TRY(find_keys(tx, account_list(), request));
+  const SqlPart select{std::string("select ") + kAccount + " from accounts a where a.id in"};
+  auto accounts = TRY(all_of(rows_of_keys(tx, select, found.keys), account_from));
+  return FoundAccounts{std::move(accounts), std::move(found.page)};
+}
+
 core::Result<std::uint64_t> account_count(Reading& tx) {
   auto rows = TRY(tx.query("select count(*) from accounts"));
   return rows.front().count(0);

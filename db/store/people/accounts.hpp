@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "db/store/finding/list.hpp"
 #include "db/store/people/role.hpp"
 #include "db/store/store.hpp"
 
@@ -65,6 +66,13 @@ core::Result<std::optional<Account>> account_of(Reading& tx, const std::string& 
 core::Result<std::optional<Account>> account_with_badge(Reading& tx, const std::string& badge);
 /// By name.
 core::Result<std::vector<Account>> all_accounts(Reading& tx);
+/// The list of accounts (finding/list.hpp): its orders and filters.
+const ListShape& account_list();
+struct FoundAccounts {
+  std::vector<Account> accounts;
+  ListPage page;
+};
+core::Result<FoundAccounts> find_accounts(Reading& tx, const ListRequest& request);
 core::Result<std::uint64_t> account_count(Reading& tx);
 
 /// @param token_hash  SHA-256 of the token the browser holds.

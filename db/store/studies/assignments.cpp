@@ -3,48 +3,10 @@
 #include "core/require.hpp"
 #include "core/try.hpp"
 #include "db/store/rows.hpp"
+#include "db/store/studies/assignment_list.hpp"
 
 namespace tractus {
 namespace store {
-namespace {
-
-/// Columns as assignment_from reads them; the one placeholder six times: whose counts (empty: all).
-constexpr const char* kAssignment =
-    "select a.study_id, s.title, s.state, s.ordering, s.repeats, s.seed, s.on_invalid, "
-    "s.made_utc_us, s.made_by, a.cohort_id, a.due_utc_us, a.release, a.made_by_id, "
-    "coalesce(c.name, ''), (select count(*) from assignment_people p where p.study_id = "
-    "a.study_id), (select count(*) from study_slots k join assignment_people p on p.study_id = "
-    "k.study_id and p.participant = k.participant where k.study_id = a.study_id and k.state = "
-    "'recorded' and (? = '' or p.account_id = ?)), (select count(*) from study_slots k join "
-    "assignment_people p on p.study_id = k.study_id and p.participant = k.participant where "
-    "k.study_id = a.study_id and k.state <> 'invalid' and (? = '' or p.account_id = ?)), (select "
-    "count(*) from study_slots k join cases d on d.id = k.case_id join assignment_people p on "
-    "p.study_id = k.study_id and p.participant = k.participant where k.study_id = a.study_id and "
-    "k.state <> 'invalid' and d.planned = 1 and (? = '' or p.account_id = ?)) "
-    "from assignments a join studies s on s.id = a.study_id left join cohorts c on c.id = "
-    "a.cohort_id ";
-
-std::optional<std::int64_t> integer_or_null(const Row& row, std::size_t column) {
-  const auto* held = std::get_if<std::int64_t>(&row.value(column));
-  return held ? std::optional(*held) : std::nullopt;
-}
-
-core::Result<Assignment> assignment_from(const Row& row) {
-  auto study = TRY(study_from(row));
-  const auto release = TRY(row.word<Release>(11, "assignments.release"));
-  return Assignment{.study = std::move(study),
-                    .cohort_id = row.text_or_null(9),
-                    .due_utc_us = integer_or_null(row, 10),
-                    .release = release,
-                    .made_by_id = row.text(12),
-                    .cohort_name = row.text(13),
-                    .people = row.count(14),
-                    .done = row.count(15),
-                    .planned = row.count(16),
-                    .to_drill = row.count(17)};
-}
-
-}  // namespace
 
 core::Result<AssignmentId> add_assignment(Writing& tx, const Assignment& a,
                                           const std::vector<std::string>& case_ids,
@@ -55,6 +17,7 @@ core::Result<AssignmentId> add_assignment(Writing& tx, const Assignment& a,
       "(?, ?, ?, ?, ?)",
       {a.study.id, or_null(a.cohort_id), or_null(a.due_utc_us), name_value(a.release),
        a.made_by_id})));
+  TRY(add_assignment_entry(tx, a.study.id));
   return find_assignment(tx, a.study.id);
 }
 
@@ -81,13 +44,20 @@ core::Result<void> add_assigned_person(Writing& tx, const AssignmentId& id,
                {id.text(), account_id, participant}));
   if (!added && added.error().code == core::Errc::conflict)
     return core::Error{core::Errc::conflict, "the assignment already includes this person"};
-  return added;
+  TRY(added);
+  TRY(
+      tx.query("insert into assigned_progress (account_id, study_id, participant, finished) values "
+               "(?, ?, ?, 1)",
+               {account_id, id.text(), participant}));
+  return note_progress(tx, id.text(), participant);
 }
 
 core::Result<void> set_release(Writing& tx, const AssignmentId& id, Release release,
                                const AuditStamp& stamp) {
   TRY(done(tx.query("update assignments set release = ? where study_id = ?",
                     {name_value(release), id.text()})));
+  TRY(tx.query("update assignment_entries set release = ? where study_id = ?",
+               {name_value(release), id.text()}));
   return add_study_event(tx, id.text(), stamp, "results " + std::string(core::name(release)));
 }
 
@@ -95,21 +65,17 @@ core::Result<void> set_due(Writing& tx, const AssignmentId& id,
                            const std::optional<std::int64_t>& due_utc_us, const AuditStamp& stamp) {
   TRY(done(tx.query("update assignments set due_utc_us = ? where study_id = ?",
                     {or_null(due_utc_us), id.text()})));
+  TRY(tx.query("update assignment_entries set due_utc_us = ? where study_id = ?",
+               {due_utc_us.value_or(kNeverDue_utc_us), id.text()}));
   return add_study_event(tx, id.text(), stamp, "due date changed");
 }
 
 core::Result<std::vector<Assignment>> assignments_of(Reading& tx, const AssignmentFilter& whose) {
   const std::string &me = whose.done_by, &leader = whose.led_by;
-  return all_of(
-      tx.query(
-          std::string(kAssignment) +
-              "where (? = '' or a.made_by_id = ? or exists (select 1 from cohort_people f where "
-              "f.cohort_id = a.cohort_id and f.account_id = ? and f.part = 'faculty')) and (? = '' "
-              "or "
-              "exists (select 1 from assignment_people p where p.study_id = a.study_id and "
-              "p.account_id = ?)) order by a.due_utc_us is null, a.due_utc_us, s.made_utc_us, s.id",
-          {me, me, me, me, me, me, leader, leader, leader, me, me}),
-      assignment_from);
+  return all_of(tx.query(std::string(kAssignment) + "where " + kAssignmentReached +
+                             " order by a.due_utc_us is null, a.due_utc_us, s.made_utc_us, s.id",
+                         {me, me, me, me, me, me, leader, leader, leader, me, me}),
+                assignment_from);
 }
 
 core::Result<Assignment> assignment_of(Reading& tx, const AssignmentId& id,

@@ -2,6 +2,7 @@
 /// results trainees see when faculty releases them.
 #pragma once
 
+#include "db/store/finding/list.hpp"
 #include "db/store/people/people.hpp"
 #include "db/store/studies/study_slots.hpp"
 
@@ -64,6 +65,17 @@ struct AssignmentFilter {
 };
 /// Sorted by due time, earliest first, those without a due time last; then by time of creation.
 core::Result<std::vector<Assignment>> assignments_of(Reading& tx, const AssignmentFilter& whose);
+/// The list of assignments (finding/list.hpp): its orders and filters. The first order is the unfinished ones before
+/// the finished ones, of both the earliest due first.
+const ListShape& assignment_list();
+struct FoundAssignments {
+  std::vector<Assignment> assignments;
+  ListPage page;
+};
+/// `done_by` counts an assignment as finished once this account has finished its part.
+core::Result<FoundAssignments> find_assignments(Reading& tx, const ListRequest& request,
+                                                const AssignmentFilter& whose);
+
 core::Result<Assignment> assignment_of(Reading& tx, const AssignmentId& id,
                                        const std::string& done_by = {});
 core::Result<std::vector<AssignmentId>> assignments_of_cohort(Reading& tx,

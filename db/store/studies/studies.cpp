@@ -4,6 +4,7 @@
 #include "core/require.hpp"
 #include "core/try.hpp"
 #include "db/store/rows.hpp"
+#include "db/store/studies/assignment_list.hpp"
 
 namespace tractus {
 namespace store {
@@ -93,6 +94,7 @@ core::Result<void> add_participant(Writing& tx, const SeriesId& id, const Partic
       {id.text(), participant.name, id.text(), name_value(participant.state), participant.level,
        or_null(participant.experience_years), bool_value(participant.simulated), stamp.at_utc_us}));
   TRY(add_slots(tx, id.text(), participant.name, case_order, stamp));
+  TRY(note_progress(tx, id.text(), participant.name));
   return add_study_event(tx, id.text(), stamp, "enrolled", nullptr, {}, participant.name);
 }
 

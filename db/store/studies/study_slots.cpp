@@ -7,6 +7,7 @@
 #include "core/bytes.hpp"
 #include "core/try.hpp"
 #include "db/store/rows.hpp"
+#include "db/store/studies/assignment_list.hpp"
 
 namespace tractus {
 namespace store {
@@ -105,11 +106,13 @@ core::Result<void> close_and_repeat(Writing& tx, const Slot& slot, const Tool& t
                                     const AuditStamp& stamp) {
   auto on_invalid = TRY(on_invalid_of(tx, slot.study_id));
   const bool never = on_invalid == Repetition::never;
-  if (slot.planned && !tool.burr && !never)
-    return set_slot(tx, slot.id, slot.station_id ? SlotState::taken : SlotState::waiting,
-                    slot.station_id, stamp.at_utc_us);
+  if (slot.planned && !tool.burr && !never) {
+    TRY(set_slot(tx, slot.id, slot.station_id ? SlotState::taken : SlotState::waiting,
+                 slot.station_id, stamp.at_utc_us));
+    return note_progress(tx, slot.study_id, slot.participant);
+  }
   TRY(set_slot(tx, slot.id, SlotState::invalid, slot.station_id, stamp.at_utc_us));
-  if (never) return {};
+  if (never) return note_progress(tx, slot.study_id, slot.participant);
   auto place = TRY(place_of_repetition(tx, slot, on_invalid));
   Slot again = slot;
   again.id = core::hex(core::random_bytes(32));
@@ -118,6 +121,7 @@ core::Result<void> close_and_repeat(Writing& tx, const Slot& slot, const Tool& t
       "repeat_of, changed_utc_us) values (?, ?, ?, ?, ?, ?, 'waiting', ?, ?)",
       {again.id, slot.study_id, slot.participant, place.first, place.second, slot.case_id, slot.id,
        stamp.at_utc_us}));
+  TRY(note_progress(tx, slot.study_id, slot.participant));
   return add_study_event(tx, slot.study_id, stamp, "repeated", &again);
 }
 
@@ -278,7 +282,8 @@ core::Result<void> record_for_slot(Writing& tx, const std::string& trial_id, boo
   TRY(add_study_event(tx, slot.study_id, said, event, &slot, trial_id));
   if (what.state == StudyTrialState::invalid) return close_and_repeat(tx, slot, tool, said);
   if (!counts || to_be_felt) return {};
-  return set_slot(tx, slot.id, SlotState::recorded, slot.station_id, stamp.at_utc_us);
+  TRY(set_slot(tx, slot.id, SlotState::recorded, slot.station_id, stamp.at_utc_us));
+  return note_progress(tx, slot.study_id, slot.participant);
 }
 
 core::Result<void> set_trial_invalid(Writing& tx, const SeriesId& id, const std::string& trial_id,

@@ -8,6 +8,7 @@
 #include "core/json.hpp"
 #include "core/try.hpp"
 #include "db/store/rows.hpp"
+#include "db/store/trials/summary_row.hpp"
 
 namespace tractus {
 namespace store {
@@ -98,11 +99,12 @@ core::Result<void> add_rating_request(Writing& tx, const RatingRequest& of) {
   const auto before = TRY(rating_requests(tx, of.trial_id));
   if (std::ranges::find(before, of.rubric_id, &RatingRequest::rubric_id) != before.end())
     return Error{Errc::conflict, "this trial is to be rated by this rubric already"};
-  return done(tx.query(
+  TRY(tx.query(
       "insert into rating_requests (trial_id, rubric_id, version, blind, raters, made_utc_us, "
       "made_by) values (?, ?, ?, ?, ?, ?, ?)",
       {of.trial_id, of.rubric_id, of.version, bool_value(of.blind), of.raters, of.made_utc_us,
        of.made_by}));
+  return add_trial_entry(tx, of.trial_id);
 }
 
 core::Result<std::vector<RatingRequest>> rating_requests(Reading& tx, const std::string& trial_id) {
@@ -122,8 +124,9 @@ core::Result<void> remove_rating_request(Writing& tx, const std::string& trial_i
     return Error{Errc::conflict,
                  "somebody has rated this trial by this rubric: that is kept, and the trial stays "
                  "to be rated"};
-  return done(tx.query("delete from rating_requests where trial_id = ? and rubric_id = ?",
-                       {trial_id, rubric_id}));
+  TRY(tx.query("delete from rating_requests where trial_id = ? and rubric_id = ?",
+               {trial_id, rubric_id}));
+  return add_trial_entry(tx, trial_id);
 }
 
 core::Result<void> add_rating(Writing& tx, const Rating& rating) {
@@ -138,12 +141,13 @@ core::Result<void> add_rating(Writing& tx, const Rating& rating) {
                  "give a reason to supersede it"};
   core::Json scores = core::Json::array();
   for (const int score : rating.scores) scores.push_back(score);
-  return done(tx.query(
+  TRY(tx.query(
       "insert into ratings (trial_id, rubric_id, rater_id, number, scores, comment, reason, "
       "independent, made_utc_us) values (?, ?, ?, ?, ?, ?, ?, ?, ?)",
       {rating.trial_id, rating.rubric_id, rating.rater_id, before + 1, scores.dump(),
        rating.comment, before > 0 ? rating.reason : std::string(), bool_value(!request.complete()),
        rating.made_utc_us}));
+  return add_trial_entry(tx, rating.trial_id);
 }
 
 core::Result<std::vector<Rating>> ratings_of(Reading& tx, const std::string& trial_id) {

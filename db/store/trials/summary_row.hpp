@@ -1,4 +1,4 @@
-/// A trial's summary from a row that begins with its columns.
+/// A trial's summary from a row that begins with its columns, and the rows that a list may have.
 #pragma once
 
 #include "db/store/trials/trials.hpp"
@@ -16,6 +16,16 @@ inline constexpr const char* kPersonColumn =
 inline constexpr const char* kSummaryColumns =
     "t.id, t.case_id, c.title, s.name, t.operator_name, t.simulated, t.started_utc_us, "
     "t.duration_s, t.samples, t.state, t.correct";
+
+/// Where those columns come from.
+inline constexpr const char* kTrialsFrom =
+    " from trials t join cases c on c.id = t.case_id join stations s on s.id = t.station_id ";
+
+/// " and …" for the trials that `whose` reaches and that are not blind; its values are added.
+std::string reached_sql(const TrialFilter& whose, std::vector<Value>& values);
+
+/// Puts a trial into the list by which trials are found, in the place of its row of before.
+core::Result<void> add_trial_entry(Writing& tx, const std::string& id);
 
 /// Errors: corrupt for a state that is none.
 core::Result<TrialSummary> summary_from(const Row& row);

@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "db/store/finding/list.hpp"
 #include "db/store/store.hpp"
 
 namespace tractus::store {
@@ -66,40 +67,16 @@ core::Result<std::vector<TrialSummary>> trials_before(Reading& tx, std::int64_t 
                                                       std::int64_t limit,
                                                       const TrialFilter& whose = {});
 
-enum class TrialOrder { started, case_title, person, station, duration };
-constexpr auto words(TrialOrder) {
-  using enum TrialOrder;
-  return std::to_array<core::Word<TrialOrder>>({{started, "started"},
-                                                {case_title, "case"},
-                                                {person, "person"},
-                                                {station, "station"},
-                                                {duration, "duration"}});
-}
+/// The list of trials (finding/list.hpp): its orders and filters.
+const ListShape& trial_list();
 
-/// Which answers a search is for.
-enum class AnswerFilter { any, correct, incorrect, none };
-constexpr auto words(AnswerFilter) {
-  using enum AnswerFilter;
-  return std::to_array<core::Word<AnswerFilter>>(
-      {{any, "any"}, {correct, "correct"}, {incorrect, "incorrect"}, {none, "none"}});
-}
-
-/// A part of a sorted list of trials.
-struct TrialSearch {
-  std::string text = {};  ///< in person, operator, case or station, without regard to case
-  AnswerFilter answer = AnswerFilter::any;
-  std::int64_t before_utc_us = 9'000'000'000'000'000;  ///< started before
-  TrialOrder order = TrialOrder::started;
-  bool ascending = false;
-  std::int64_t offset = 0, limit = 50;
-};
 struct FoundTrials {
   std::vector<TrialSummary> trials;
-  std::uint64_t total = 0;  ///< that the search matches, whatever part of them this is
+  ListPage page;
 };
 /// Without those that are blind (blinding.hpp). A name that is hidden is neither told nor found,
 /// but to the trainee.
-core::Result<FoundTrials> find_trials(Reading& tx, const TrialSearch& search,
+core::Result<FoundTrials> find_trials(Reading& tx, const ListRequest& request,
                                       const TrialFilter& whose);
 
 /// Puts scores, coverage (JSON) and the verdict in place of whatever was there; the trial is then

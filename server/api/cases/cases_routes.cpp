@@ -5,6 +5,7 @@
 #include "db/store/cases/cases.hpp"
 #include "server/api/backend.hpp"
 #include "server/api/cases/preview.hpp"
+#include "server/api/finding/list_request.hpp"
 #include "server/api/route.hpp"
 #include "server/api/schema.hpp"
 
@@ -15,10 +16,11 @@ namespace {
 constexpr const char* kForEver = "private, max-age=31536000, immutable";  // named by content
 
 core::Result<http::Response> list_cases(const Call& call) {
-  auto known =
-      TRY(call.backend.store.read([](store::Reading& tx) { return store::all_cases(tx); }));
+  const auto request = TRY(list_request(call, store::case_list()));
+  const auto found = TRY(
+      call.backend.store.read([&](store::Reading& tx) { return store::find_cases(tx, request); }));
   core::Json list = core::Json::array();
-  for (const store::CaseSummary& c : known)
+  for (const store::CaseSummary& c : found.cases)
     list.push_back({{"id", c.id},
                     {"title", c.title},
                     {"source", c.source},
@@ -27,7 +29,7 @@ core::Result<http::Response> list_cases(const Call& call) {
                     {"retired", c.retired},
                     {"planned", c.planned},
                     {"felt", name(c.felt)}});
-  return json_response({{"cases", list}});
+  return json_response(with_page({{"cases", list}}, found.page));
 }
 
 core::Result<http::Response> part_named(const Call& call, const std::string& part_name) {
@@ -97,7 +99,11 @@ RouteInfo read_route(std::string path, std::string id, std::string summary, std:
 
 std::vector<RouteInfo> cases_routes() {
   const Parameter id = path_text("id", "Id of the case, the SHA-256 of its file case.json");
-  RouteInfo list = read_route("", "cases", "List the published cases, newest first", "CaseList");
+  RouteInfo list = read_route("", "cases", "List published cases", "CaseList");
+  list.parameters = list_parameters(store::case_list(), "title, source or id");
+  std::vector<schema::Field> fields = page_fields();
+  fields.emplace_back(
+      "cases", schema::array(schema::ref("CaseSummary"), "Published cases in the order asked for"));
   list.schemas = {
       {"CaseSummary",
        schema::object(
@@ -114,8 +120,7 @@ std::vector<RouteInfo> cases_routes() {
                          "Whether the case's breaches can be told by feel, by its certificate: "
                          "told (every one), not_told, not_known (its bone does not say), untried "
                          "(a job will try it)")}})},
-      {"CaseList", schema::object({{"cases", schema::array(schema::ref("CaseSummary"),
-                                                           "Published cases, newest first")}})}};
+      {"CaseList", schema::object(fields)}};
   list.handle = list_cases;
 
   RouteInfo one = read_route("/{id}", "case", "Read the signed manifest case.json, byte for byte",

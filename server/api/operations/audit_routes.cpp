@@ -2,14 +2,13 @@
 #include "core/try.hpp"
 #include "db/store/operations/audit.hpp"
 #include "server/api/backend.hpp"
+#include "server/api/finding/list_request.hpp"
 #include "server/api/route.hpp"
 #include "server/api/schema.hpp"
 
 namespace tractus {
 namespace api {
 namespace {
-
-constexpr double kEnd = 9e15;  // exact in a double
 
 core::Json row_json(const store::AuditRow& row) {
   return {{"number", row.number},     {"at_utc_us", row.act.at_utc_us},
@@ -20,12 +19,12 @@ core::Json row_json(const store::AuditRow& row) {
 }
 
 core::Result<http::Response> list_audit(const Call& call) {
-  auto found = TRY(call.backend.store.read([&](store::Reading& tx) {
-    return store::audit_before(tx, call.integer("before"), call.integer("limit"));
-  }));
+  const auto request = TRY(list_request(call, store::audit_list()));
+  auto found = TRY(
+      call.backend.store.read([&](store::Reading& tx) { return store::find_audit(tx, request); }));
   core::Json list = core::Json::array();
-  for (const auto& row : found) list.push_back(row_json(row));
-  return json_response({{"rows", list}});
+  for (const auto& row : found.rows) list.push_back(row_json(row));
+  return json_response(with_page({{"rows", list}}, found.page));
 }
 
 /// Recomputes the whole hash chain.
@@ -39,34 +38,24 @@ core::Result<http::Response> check_audit(const Call& call) {
                         {"failure", end ? core::Json() : core::Json(end.error().what)}});
 }
 
-Parameter whole(std::string name, std::string meaning, double high, std::string fallback) {
-  return {.in = Parameter::In::query,
-          .name = std::move(name),
-          .kind = Parameter::Kind::integer,
-          .unit = "1",
-          .meaning = std::move(meaning),
-          .low = 1,
-          .high = high,
-          .fallback = std::move(fallback)};
-}
-
 }  // namespace
 
 std::vector<RouteInfo> audit_routes() {
   using namespace schema;
-  RouteInfo list{
-      .method = "GET",
-      .path = "/api/v1/audit",
-      .id = "audit",
-      .summary = "List the rows of the audit trail, newest first: who changed what and when",
-      .who = {Role::admin},
-      .parameters = {whole("limit", "Largest number of rows in the answer", 500, "100"),
-                     whole("before", "Only rows whose number is smaller than this", kEnd,
-                           "9000000000000000")},
-      .body = "",
-      .answer = "AuditRows",
-      .schemas = {},
-      .handle = list_audit};
+  RouteInfo list{.method = "GET",
+                 .path = "/api/v1/audit",
+                 .id = "audit",
+                 .summary = "List rows of the audit trail: who changed what and when",
+                 .who = {Role::admin},
+                 .parameters = list_parameters(store::audit_list(),
+                                               "account, action, object, details or address"),
+                 .body = "",
+                 .answer = "AuditRows",
+                 .schemas = {},
+                 .handle = list_audit};
+  std::vector<Field> rows = page_fields();
+  rows.emplace_back("rows",
+                    array(ref("AuditRow"), "Rows of the audit trail, in the order asked for"));
   list.schemas = {
       {"AuditRow",
        object({{"number", integer("1", "Number of the audit row, counted from 1 without gaps")},
@@ -81,8 +70,7 @@ std::vector<RouteInfo> audit_routes() {
                {"object", text("Arguments in the path of the request, for example id=…")},
                {"detail", anything("Fields of the request's body, without secrets")},
                {"hash", text("Hash of this row and of all rows before it")}})},
-      {"AuditRows",
-       object({{"rows", array(ref("AuditRow"), "Rows of the audit trail, newest first")}})}};
+      {"AuditRows", object(rows)}};
   RouteInfo check{.method = "GET",
                   .path = "/api/v1/audit/check",
                   .id = "checkAudit",

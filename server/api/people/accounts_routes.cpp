@@ -3,6 +3,7 @@
 #include "core/bytes.hpp"
 #include "core/try.hpp"
 #include "server/api/backend.hpp"
+#include "server/api/finding/list_request.hpp"
 #include "server/api/people/authentication.hpp"
 #include "server/api/people/people_json.hpp"
 #include "server/api/people/throttle.hpp"
@@ -20,11 +21,12 @@ using store::AccountState;
 constexpr std::uint64_t kMaxAccount_bytes = 8192;
 
 Result<http::Response> list_accounts(const Call& call) {
-  auto found =
-      TRY(call.backend.store.read([](store::Reading& tx) { return store::all_accounts(tx); }));
+  const auto request = TRY(list_request(call, store::account_list()));
+  auto found = TRY(call.backend.store.read(
+      [&](store::Reading& tx) { return store::find_accounts(tx, request); }));
   core::Json list = core::Json::array();
-  for (const auto& account : found) list.push_back(account_json(account));
-  return json_response({{"accounts", list}});
+  for (const auto& account : found.accounts) list.push_back(account_json(account));
+  return json_response(with_page({{"accounts", list}}, found.page));
 }
 
 Role role_field(core::Fields& fields) {
@@ -177,14 +179,15 @@ RouteInfo account_route(std::string tail, std::string id, std::string summary, s
 
 std::vector<RouteInfo> accounts_routes() {
   using namespace schema;
-  RouteInfo list = account_route(
-      "", "accounts", "List all accounts, sorted by name, without password hashes and secrets",
-      "Accounts", list_accounts);
+  RouteInfo list =
+      account_route("", "accounts", "List accounts, without password hashes and secrets",
+                    "Accounts", list_accounts);
   list.method = "GET";
   list.body_limit_bytes = 0;
-  list.schemas = {
-      {"Account", account_schema()},
-      {"Accounts", object({{"accounts", array(ref("Account"), "All accounts, sorted by name")}})}};
+  list.parameters = list_parameters(store::account_list(), "name, badge or level");
+  std::vector<Field> fields = page_fields();
+  fields.emplace_back("accounts", array(ref("Account"), "Accounts in the order asked for"));
+  list.schemas = {{"Account", account_schema()}, {"Accounts", object(fields)}};
   RouteInfo add =
       account_route("", "addAccount",
                     "Create an account; its owner must choose a new password at the first sign-in",

@@ -7,6 +7,7 @@
 #include "db/store/studies/assignments.hpp"
 #include "db/store/trials/debriefs.hpp"
 #include "server/api/backend.hpp"
+#include "server/api/finding/list_request.hpp"
 #include "server/api/people/authentication.hpp"
 #include "server/api/schema.hpp"
 #include "server/api/studies/assignment_plan.hpp"
@@ -45,15 +46,21 @@ Json assignment_json(const store::Assignment& a, Scope of) {
   return out;
 }
 
+store::AssignmentFilter whose_assignments(const Call& call) {
+  store::AssignmentFilter out;
+  if (call.of == Scope::cohort) out.led_by = call.caller.id;
+  if (call.of == Scope::own) out.done_by = call.caller.id;
+  return out;
+}
+
 Result<http::Response> list_assignments(const Call& call) {
-  store::AssignmentFilter whose;
-  if (call.of == Scope::cohort) whose.led_by = call.caller.id;
-  if (call.of == Scope::own) whose.done_by = call.caller.id;
-  auto found = TRY(call.backend.store.read(
-      [&](store::Reading& tx) { return store::assignments_of(tx, whose); }));
+  const auto request = TRY(list_request(call, store::assignment_list()));
+  auto found = TRY(call.backend.store.read([&](store::Reading& tx) {
+    return store::find_assignments(tx, request, whose_assignments(call));
+  }));
   Json list = Json::array();
-  for (const auto& one : found) list.push_back(assignment_json(one, call.of));
-  return json_response({{"assignments", list}});
+  for (const auto& one : found.assignments) list.push_back(assignment_json(one, call.of));
+  return json_response(with_page({{"assignments", list}}, found.page));
 }
 
 /// @param whose  this participant's alone; empty: everybody's.
@@ -163,15 +170,18 @@ Result<http::Response> release_many(const Call& call) {
   if (ids && !fits)
     fields.wrong("assignments", fmt::format("an array of 1 to {} ids is expected", kMaxReleased));
   TRY(fields.done());
+  Json released = Json::array();
   TRY(call.backend.store.write([&](store::Writing& tx) -> Result<void> {
     const store::AuditStamp stamp{call.caller.name, call.backend.now_utc_us()};
     for (const Json& one : *ids) {
       const auto id = TRY(store::find_assignment(tx, one.get<std::string>()));
       TRY(store::set_release(tx, id, release, stamp));
+      const auto now = TRY(store::assignment_of(tx, id));
+      released.push_back(assignment_json(now, call.of));
     }
     return {};
   }));
-  return list_assignments(call);
+  return json_response({{"assignments", released}});
 }
 
 Result<http::Response> set_due(const Call& call) {
@@ -290,11 +300,12 @@ std::vector<NamedSchema> read_schemas() {
   whole.emplace_back("trials", optional(array(ref("AssignedTrialDone"),
                                               "Uploaded trials; for a trainee only the own trials, "
                                               "and only after the release of the results")));
+  std::vector<Field> list = page_fields();
+  list.emplace_back("assignments",
+                    array(ref("AssignmentSummary"), "Assignments in the order asked for"));
   return {
       {"AssignmentSummary", object(assignment_fields())},
-      {"Assignments",
-       object({{"assignments", array(ref("AssignmentSummary"),
-                                     "Assignments, sorted by due time, earliest first")}})},
+      {"Assignments", object(list)},
       {"AssignedTrainee",
        object({{"account_id", text("Id of the person's account")},
                {"name", text("Name of the account")},
@@ -385,12 +396,14 @@ RouteInfo releasing_route() {
                                    "Releases", release_many);
   out.path = "/api/v1/assignment-releases";
   out.body_limit_bytes = 16384;
-  out.answer = "Assignments";
+  out.answer = "ReleasedAssignments";
   out.ends = {{"/assignments/*", Object::assignment, out.who}};
   out.schemas = {
       {"Releases",
        object({{"assignments", array(text("Id of an assignment"), "Assignments, at most 200")},
-               {"release", one_of<Release>("When trainees see their results")}})}};
+               {"release", one_of<Release>("When trainees see their results")}})},
+      {"ReleasedAssignments", object({{"assignments", array(ref("AssignmentSummary"),
+                                                            "The assignments of the request")}})}};
   return out;
 }
 
@@ -405,6 +418,7 @@ std::vector<RouteInfo> assignments_routes() {
   list.who = {
       Role::admin, Role::director, {Role::faculty, Scope::cohort}, {Role::trainee, Scope::own}};
   list.answer = "Assignments";
+  list.parameters = list_parameters(store::assignment_list(), "title, cohort or creator");
   list.schemas = read_schemas();
   RouteInfo one = assignment_route("GET", "/{id}", "assignment",
                                    "Read one assignment with its trainees and uploaded trials", "",

@@ -1,4 +1,5 @@
 #include "metrics/metric.hpp"
+#include "server/api/finding/list_request.hpp"
 #include "server/api/schema.hpp"
 #include "server/api/trials/trial_json.hpp"
 #include "trial/trial.hpp"
@@ -143,11 +144,12 @@ std::vector<schema::Field> metric_fields() {
 }
 
 std::vector<NamedSchema> trial_schemas() {
+  std::vector<Field> list = page_fields();
+  list.emplace_back("trials", array(ref("TrialSummary"), "Trials in the order asked for"));
+  list.emplace_back("more", truth("True if trials follow those of the answer"));
   return {
       {"TrialSummary", object(summary_fields())},
-      {"TrialList", object({{"trials", array(ref("TrialSummary"), "Trials in the order asked for")},
-                            {"total", integer("1", "Number of trials that the search matches")},
-                            {"more", truth("True if trials follow those of the answer")}})},
+      {"TrialList", object(list)},
       {"Trial", trial_schema()},
       {"TrialProbe",
        object(

@@ -5,6 +5,7 @@
 
 #include "core/try.hpp"
 #include "server/api/backend.hpp"
+#include "server/api/finding/list_request.hpp"
 #include "server/api/schema.hpp"
 #include "server/api/trials/trial_json.hpp"
 #include "server/api/trials/trial_signals.hpp"
@@ -17,51 +18,19 @@ namespace tractus {
 namespace api {
 namespace {
 
-constexpr double kEndOfTime_us = 9e15;  // exact in a double; the year 2255
-constexpr double kLatestTrial_s = 1e6, kMostTrials = 1e9;
-constexpr std::size_t kMaxSearch_bytes = 200;
-
-enum class Direction { ascending, descending };
-constexpr auto words(Direction) {
-  using enum Direction;
-  return std::to_array<core::Word<Direction>>(
-      {{ascending, "ascending"}, {descending, "descending"}});
-}
-
-/// The argument as a word of an enum.
-template <core::Named E>
-core::Result<E> word_argument(const Call& call, const std::string& name) {
-  if (const auto known = core::from_name<E>(call.text(name))) return *known;
-  return core::Error{core::Errc::bad_input, name + ": " + core::names_listed<E>() + " is expected"};
-}
-
-core::Result<store::TrialSearch> search_of(const Call& call) {
-  const auto answer = TRY(word_argument<store::AnswerFilter>(call, "answer"));
-  const auto order = TRY(word_argument<store::TrialOrder>(call, "sort"));
-  const auto direction = TRY(word_argument<Direction>(call, "order"));
-  const std::string& text = call.text("search");
-  if (text.size() > kMaxSearch_bytes || !store::is_text(text))
-    return core::Error{core::Errc::bad_input, "search: at most 200 bytes of text are expected"};
-  return store::TrialSearch{.text = text,
-                            .answer = answer,
-                            .before_utc_us = call.integer("before_utc_us"),
-                            .order = order,
-                            .ascending = direction == Direction::ascending,
-                            .offset = call.integer("offset"),
-                            .limit = call.integer("limit")};
-}
+constexpr double kLatestTrial_s = 1e6;
 
 core::Result<http::Response> list_trials(const Call& call) {
   store::TrialFilter whose;
   if (call.of == Scope::cohort) whose.taught_by = call.caller.id;
   if (call.of == Scope::own) whose.seen_by = call.caller.id;
-  const auto search = TRY(search_of(call));
+  const auto request = TRY(list_request(call, store::trial_list()));
   const auto found = TRY(call.backend.store.read(
-      [&](store::Reading& tx) { return store::find_trials(tx, search, whose); }));
+      [&](store::Reading& tx) { return store::find_trials(tx, request, whose); }));
   core::Json list = core::Json::array();
   for (const store::TrialSummary& trial : found.trials) list.push_back(summary_json(trial));
-  const bool more = std::uint64_t(search.offset) + found.trials.size() < found.total;
-  return json_response({{"trials", list}, {"total", found.total}, {"more", more}});
+  return json_response(
+      with_page({{"trials", list}, {"more", !found.page.next.empty()}}, found.page));
 }
 
 struct Found {
@@ -219,22 +188,7 @@ std::vector<RouteInfo> trials_routes() {
   RouteInfo list = trial_route(
       "", "trials", "List trials, newest first or in another order, all or those of a search",
       "TrialList");
-  list.parameters = {
-      query("limit", Kind::integer, "1", "Largest number of trials in the answer", 1, 500, "50"),
-      query("before_utc_us", Kind::integer, "us",
-            "Only trials that started before this time, in microseconds since 1970-01-01 UTC", 0,
-            kEndOfTime_us, "9000000000000000"),
-      query("search", Kind::text, "",
-            "Only trials with this text in person, operator, case or station, without regard to "
-            "case; at most 200 bytes",
-            0, 0, ""),
-      query("answer", Kind::text, "",
-            "Only trials with such an answer: any, correct, incorrect or none", 0, 0, "any"),
-      query("sort", Kind::text, "",
-            "Sort by started, case, person (else operator), station or duration", 0, 0, "started"),
-      query("order", Kind::text, "", "Order: ascending or descending", 0, 0, "descending"),
-      query("offset", Kind::integer, "1", "Number of trials to leave out at the start", 0,
-            kMostTrials, "0")};
+  list.parameters = list_parameters(store::trial_list(), "person, operator, case or station");
   list.schemas = trial_schemas();
   list.handle = list_trials;
 

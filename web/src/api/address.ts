@@ -10,7 +10,9 @@ type Parameters<P extends keyof paths> = paths[P] extends { get: { parameters: i
 type PathPart<P extends keyof paths> = Parameters<P> extends { path: infer Found } ? Found : Record<string, never>;
 /** What may follow the question mark, by any of the path's methods. */
 type QueryOf<Operation> = Operation extends { parameters: { query?: infer Found } } ? NonNullable<Found> : never;
-type QueryPart<P extends keyof paths> = QueryOf<paths[P]['get']> | QueryOf<paths[P]['post']>;
+/** A value that is undefined is left out. */
+type Sparse<Query> = Query extends unknown ? { readonly [Name in keyof Query]: Query[Name] | undefined } : never;
+type QueryPart<P extends keyof paths> = Sparse<QueryOf<paths[P]['get']> | QueryOf<paths[P]['post']>>;
 
 const kRoot = '/api/v1';
 

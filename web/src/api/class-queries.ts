@@ -5,7 +5,7 @@ import { address } from './address';
 import { requestJson, withoutPointer } from './client';
 import { accountSchema } from './network-schemas';
 import { count } from './quantities';
-import { assignmentListSchema, type Release } from './teaching-schemas';
+import { releasedAssignmentsSchema, type Release } from './teaching-schemas';
 import type { Role } from './network-schemas';
 
 export const importSchema = v.object({
@@ -72,7 +72,7 @@ export const changeAccounts = (changes: AccountChanges) =>
   requestJson(address('/api/v1/accounts/change', {}), changedAccountsSchema, { ...posted, body: changes });
 
 export const releaseMany = (assignments: readonly string[], release: Release) =>
-  requestJson(address('/api/v1/assignment-releases', {}), assignmentListSchema, {
+  requestJson(address('/api/v1/assignment-releases', {}), releasedAssignmentsSchema, {
     method: 'POST',
     body: { assignments, release },
   });

@@ -25,6 +25,8 @@ export type { Slice, SlicePlane, Vec3 } from './slices';
 export * from './oidc-queries';
 export * from './class-queries';
 export * from './sign-in-card';
+export { accountsAsked, assignmentsAsked, auditAsked, casesAsked, trialsAsked } from './lists';
+export { useSavedViews } from './view-queries';
 export * from './criteria-queries';
 export type * from './criteria-schemas';
 export * from './rating-queries';

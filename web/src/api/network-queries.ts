@@ -1,7 +1,8 @@
 /** Accounts, stations, cohorts and the audit trail: what can be asked, and what can be decided. */
-import { infiniteQueryOptions, queryOptions } from '@tanstack/react-query';
+import { keepPreviousData, queryOptions } from '@tanstack/react-query';
 import { address } from './address';
 import { requestJson, request } from './client';
+import { everyRow, kMostRows, kRowsPerPage, type AccountsAsked, type AuditAsked } from './lists';
 import {
   accountListSchema,
   accountSchema,
@@ -18,12 +19,26 @@ import {
   type Role,
 } from './network-schemas';
 
-const kAuditPage = 100;
 const kStations_ms = 15_000;
 
-export const accountsQuery = queryOptions({
+const accounts = (asked: AccountsAsked, limit: number, signal: AbortSignal) =>
+  requestJson(address('/api/v1/accounts', {}, { ...asked, limit }), accountListSchema, { signal });
+/** A page of the accounts. */
+export const accountsQuery = (asked: AccountsAsked) =>
+  queryOptions({
+    queryKey: ['accounts', 'page', asked],
+    queryFn: ({ signal }) => accounts(asked, kRowsPerPage, signal),
+    placeholderData: keepPreviousData,
+  });
+/** All accounts, by name. Its key begins those of the pages. */
+export const allAccountsQuery = queryOptions({
   queryKey: ['accounts'],
-  queryFn: ({ signal }) => requestJson(address('/api/v1/accounts', {}), accountListSchema, { signal }),
+  queryFn: async ({ signal }) => ({
+    accounts: await everyRow(async (cursor) => {
+      const { accounts: rows, next } = await accounts({ cursor }, kMostRows, signal);
+      return { rows, next };
+    }),
+  }),
 });
 export const stationsQuery = queryOptions({
   queryKey: ['stations'],
@@ -45,18 +60,13 @@ export const invitationsQuery = queryOptions({
   queryFn: ({ signal }) => requestJson(address('/api/v1/session/invitations', {}), invitationListSchema, { signal }),
 });
 
-/** Newest first, a page at a time. */
-export const auditQuery = infiniteQueryOptions({
-  queryKey: ['audit'],
-  queryFn: ({ pageParam, signal }) =>
-    requestJson(
-      address('/api/v1/audit', {}, { limit: kAuditPage, ...(pageParam === null ? {} : { before: pageParam }) }),
-      auditSchema,
-      { signal },
-    ),
-  initialPageParam: null as number | null,
-  getNextPageParam: ({ rows }) => (rows.length < kAuditPage ? null : (rows.at(-1)?.number ?? null)),
-});
+export const auditQuery = (asked: AuditAsked) =>
+  queryOptions({
+    queryKey: ['audit', asked],
+    queryFn: ({ signal }) =>
+      requestJson(address('/api/v1/audit', {}, { ...asked, limit: kRowsPerPage }), auditSchema, { signal }),
+    placeholderData: keepPreviousData,
+  });
 export const checkAudit = () => requestJson(address('/api/v1/audit/check', {}), auditCheckSchema);
 
 export interface NewAccount {

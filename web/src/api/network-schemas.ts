@@ -1,5 +1,6 @@
 /** What the server says of accounts, stations, cohorts and the audit trail. */
 import * as v from 'valibot';
+import { pageFields } from './lists';
 import { stationStateFields } from './live-schemas';
 import { count, inUtc } from './quantities';
 
@@ -17,7 +18,7 @@ export const accountSchema = v.object({
   level: v.string(),
   made_utc_us: inUtc,
 });
-export const accountListSchema = v.object({ accounts: v.array(accountSchema) });
+export const accountListSchema = v.object({ accounts: v.array(accountSchema), ...pageFields });
 export const newAccountSchema = v.object({ account: accountSchema, password: v.nullable(v.string()) });
 export const newPasswordSchema = v.object({ password: v.string() });
 export const codesSchema = v.object({ secret: v.string(), uri: v.string() });
@@ -60,6 +61,7 @@ export const auditSchema = v.object({
       hash: v.string(),
     }),
   ),
+  ...pageFields,
 });
 export const auditCheckSchema = v.object({
   holds: v.boolean(),

@@ -2,6 +2,7 @@
 import { keepPreviousData, queryOptions, type QueryClient } from '@tanstack/react-query';
 import { address } from './address';
 import { ApiError, requestJson, bytes, request } from './client';
+import { kRowsPerPage, type TrialsAsked } from './lists';
 import { parsePreview } from './preview';
 import {
   forceDepthSchema,
@@ -53,25 +54,12 @@ export const signIn = (name: string, password: string, code?: string) =>
 
 export const signOut = () => request(address('/api/v1/session', {}), { method: 'DELETE' });
 
-/** What a list of trials is narrowed to, and its order. */
-export interface TrialSearch {
-  readonly search: string;
-  readonly answer: 'any' | 'correct' | 'incorrect' | 'none';
-  readonly sort: 'started' | 'case' | 'person' | 'station' | 'duration';
-  readonly order: 'ascending' | 'descending';
-  /** From 0. */
-  readonly page: number;
-}
-export const kTrialsPerPage = 50;
-
 /** Searched and sorted by the server; refetched while a trial is being assessed, and from time to time for new trials. */
-export const trialsQuery = ({ page, ...search }: TrialSearch) =>
+export const trialsQuery = (asked: TrialsAsked) =>
   queryOptions({
-    queryKey: ['trials', search, page],
-    queryFn: ({ signal }) => {
-      const query = { ...search, limit: kTrialsPerPage, offset: page * kTrialsPerPage };
-      return requestJson(address('/api/v1/trials', {}, query), trialPageSchema, { signal });
-    },
+    queryKey: ['trials', asked],
+    queryFn: ({ signal }) =>
+      requestJson(address('/api/v1/trials', {}, { ...asked, limit: kRowsPerPage }), trialPageSchema, { signal }),
     placeholderData: keepPreviousData,
     refetchInterval: (query) =>
       query.state.data?.trials.some((trial) => trial.state === 'assessing') ? kAssessing_ms : kIdle_ms,

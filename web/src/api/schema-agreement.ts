@@ -42,6 +42,7 @@ import type {
   trialPageSchema,
   trialSchema,
 } from './schemas';
+import type { savedViewsSchema } from './view-queries';
 
 type Served = components['schemas'];
 type Takes<Schema extends v.GenericSchema, Answer> = Answer extends v.InferInput<Schema> ? true : false;
@@ -86,10 +87,12 @@ export interface Agreed {
   readonly metrics: Takes<typeof metricsSchema, Served['MetricList']>;
   readonly plans: Takes<typeof planListSchema, Served['PlanList']>;
   readonly analysisRun: Takes<typeof analysisRunSchema, Served['CohortAnalysis']>;
+  readonly savedViews: Takes<typeof savedViewsSchema, Served['SavedViews']>;
 }
 
 export const kAgreed: Agreed = {
   session: true,
+  savedViews: true,
   trials: true,
   trial: true,
   signals: true,

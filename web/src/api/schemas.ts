@@ -1,6 +1,7 @@
 /** What the server may say, checked once as it comes in. Everything behind this file is typed and trusted. */
 import * as v from 'valibot';
 import { kNone, share } from '@/units';
+import { pageFields } from './lists';
 import { count, finite, inMetres, inNewtons, inSeconds, inUtc } from './quantities';
 
 /** Three numbers of the patient's frame. */
@@ -35,8 +36,7 @@ export const trialSummarySchema = v.object({
 
 export const trialPageSchema = v.object({
   trials: v.array(trialSummarySchema),
-  total: v.number(),
-  more: v.boolean(),
+  ...pageFields,
 });
 
 export const metricSchema = v.object({

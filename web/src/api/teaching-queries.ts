@@ -3,6 +3,7 @@ import { queryOptions, keepPreviousData } from '@tanstack/react-query';
 import { address } from './address';
 import { requestJson, bytes, request } from './client';
 import type { components } from './generated/schema';
+import { everyRow, kMostRows, kRowsPerPage, type AssignmentsAsked, type CasesAsked } from './lists';
 import { parsePreview } from './preview';
 import { parseSlice, type SlicePlane } from './slices';
 import {
@@ -113,9 +114,24 @@ export const plannedCertificateQuery = (volume: string, request: TractRequest | 
     retry: false,
   });
 
-export const casesQuery = queryOptions({
+const cases = (asked: CasesAsked, limit: number, signal: AbortSignal) =>
+  requestJson(address('/api/v1/cases', {}, { ...asked, limit }), caseListSchema, { signal });
+/** A page of the cases. */
+export const casesQuery = (asked: CasesAsked) =>
+  queryOptions({
+    queryKey: ['cases', 'page', asked],
+    queryFn: ({ signal }) => cases(asked, kRowsPerPage, signal),
+    placeholderData: keepPreviousData,
+  });
+/** All cases, newest first. Its key begins those of the pages. */
+export const allCasesQuery = queryOptions({
   queryKey: ['cases'],
-  queryFn: ({ signal }) => requestJson(address('/api/v1/cases', {}), caseListSchema, { signal }),
+  queryFn: async ({ signal }) => ({
+    cases: await everyRow(async (cursor) => {
+      const { cases: rows, next } = await cases({ cursor }, kMostRows, signal);
+      return { rows, next };
+    }),
+  }),
 });
 export const caseQuery = (id: string) =>
   queryOptions({
@@ -188,9 +204,27 @@ export const publishScenario = (id: string, published: boolean) =>
     body: { published },
   });
 
-export const assignmentsQuery = queryOptions({
-  queryKey: ['assignments'],
-  queryFn: ({ signal }) => requestJson(address('/api/v1/assignments', {}), assignmentListSchema, { signal }),
+const assignments = (asked: AssignmentsAsked, limit: number, signal: AbortSignal) =>
+  requestJson(address('/api/v1/assignments', {}, { ...asked, limit }), assignmentListSchema, { signal });
+/** Keys of what lists assignments begin so; that of a single assignment does not. */
+export const kAssignmentLists = ['assignment-lists'] as const;
+/** A page of the assignments: usually the unfinished ones first, the earliest due first. */
+export const assignmentsQuery = (asked: AssignmentsAsked) =>
+  queryOptions({
+    queryKey: [...kAssignmentLists, asked],
+    queryFn: ({ signal }) => assignments(asked, kRowsPerPage, signal),
+    placeholderData: keepPreviousData,
+    refetchInterval: kLive_ms,
+  });
+/** All assignments, in the same order. */
+export const allAssignmentsQuery = queryOptions({
+  queryKey: [...kAssignmentLists, 'all'],
+  queryFn: async ({ signal }) => ({
+    assignments: await everyRow(async (cursor) => {
+      const { assignments: rows, next } = await assignments({ cursor }, kMostRows, signal);
+      return { rows, next };
+    }),
+  }),
   refetchInterval: kLive_ms,
 });
 export const assignmentQuery = (id: string) =>

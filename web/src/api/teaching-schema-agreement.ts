@@ -12,6 +12,7 @@ import type { agreementSchema, ratingRequestListSchema, rubricListSchema, trialR
 import type {
   assignmentListSchema,
   assignmentSchema,
+  releasedAssignmentsSchema,
   caseListSchema,
   commentListSchema,
   makingListSchema,
@@ -36,6 +37,7 @@ export interface TeachingAgreed {
   readonly scenarios: Takes<typeof scenarioListSchema, Served['ScenarioVersions']>;
   readonly check: Takes<typeof scenarioCheckSchema, Served['ScenarioCheck']>;
   readonly assignments: Takes<typeof assignmentListSchema, Served['Assignments']>;
+  readonly released: Takes<typeof releasedAssignmentsSchema, Served['ReleasedAssignments']>;
   readonly assignment: Takes<typeof assignmentSchema, Served['Assignment']>;
   readonly comments: Takes<typeof commentListSchema, Served['TrialComments']>;
   readonly references: Takes<typeof referenceListSchema, Served['ReferenceTrials']>;
@@ -61,6 +63,7 @@ export const kTeachingAgreed: TeachingAgreed = {
   scenarios: true,
   check: true,
   assignments: true,
+  released: true,
   assignment: true,
   comments: true,
   references: true,

@@ -1,5 +1,6 @@
 /** What the server says of volumes, cases and their making, probing scenarios, assignments, comments and examples. */
 import * as v from 'valibot';
+import { pageFields } from './lists';
 import { count, finite, inMetres, inNewtons, inSeconds, inUtc } from './quantities';
 import { tractSchema } from './schemas';
 
@@ -40,7 +41,7 @@ export const caseSummarySchema = v.object({
   planned: v.boolean(),
   felt: v.picklist(['untried', 'told', 'not_told', 'not_known']),
 });
-export const caseListSchema = v.object({ cases: v.array(caseSummarySchema) });
+export const caseListSchema = v.object({ cases: v.array(caseSummarySchema), ...pageFields });
 /** Of the signed manifest and of the truth what a page shows. */
 export const caseManifestSchema = v.object({
   title: v.string(),
@@ -184,7 +185,8 @@ const assignmentFields = {
   repeats: v.optional(count),
   people: v.optional(count),
 };
-export const assignmentListSchema = v.object({ assignments: v.array(v.object(assignmentFields)) });
+export const releasedAssignmentsSchema = v.object({ assignments: v.array(v.object(assignmentFields)) });
+export const assignmentListSchema = v.object({ ...releasedAssignmentsSchema.entries, ...pageFields });
 export const assignmentSchema = v.object({
   ...assignmentFields,
   trainees: v.optional(

@@ -60,7 +60,8 @@ const features = tableFeatures({
 
 const kSigns = { ascending: '▲', descending: '▼', none: '↕' } as const;
 
-const titleOf = <Row,>({ title, name }: DataColumn<Row>) => title ?? (typeof name === 'string' ? name : '');
+const titleOf = <Row,>({ title, name }: Pick<DataColumn<Row>, 'name' | 'title'>) =>
+  title ?? (typeof name === 'string' ? name : '');
 
 /** A column's name as the button that sorts by it; where the name is a term with its definition, the button stands beside it. */
 export function SortHead<Row>({
@@ -68,7 +69,7 @@ export function SortHead<Row>({
   sorted,
   onPress,
 }: {
-  readonly column: DataColumn<Row>;
+  readonly column: Pick<DataColumn<Row>, 'name' | 'title'>;
   readonly sorted: Column<Row>['sorted'];
   readonly onPress: () => void;
 }) {

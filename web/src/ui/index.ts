@@ -8,6 +8,8 @@ export { ReasonDialog } from './dialog';
 export { DropZone, type Dropped } from './drop-zone';
 export { Facts, type Fact } from './facts';
 export { Field } from './field';
+export { useList } from './list-state';
+export { ListTable, type ListColumn, type ListFilter } from './list-table';
 export { Notice } from './notice';
 export { Progress } from './progress';
 export { Scroll } from './scroll';

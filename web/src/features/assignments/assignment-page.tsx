@@ -3,7 +3,7 @@ import { useState, type FormEvent } from 'react';
 import { Link } from 'wouter';
 import {
   assignmentQuery,
-  assignmentsQuery,
+  kAssignmentLists,
   assignPerson,
   releaseReservation,
   markAssignedInvalid,
@@ -27,7 +27,7 @@ function useStore(id: string): Store {
   const client = useQueryClient();
   return async (next) => {
     client.setQueryData(assignmentQuery(id).queryKey, next);
-    await client.invalidateQueries({ queryKey: assignmentsQuery.queryKey, exact: true });
+    await client.invalidateQueries({ queryKey: kAssignmentLists });
   };
 }
 

@@ -1,52 +1,164 @@
 import { useQuery } from '@tanstack/react-query';
 import { useState } from 'react';
 import { Link } from 'wouter';
-import { assignmentsQuery, sessionQuery, type AssignmentSummary } from '@/api';
-import { Badge, Card, DataTable, Notice, useTitle, type DataColumn } from '@/ui';
-import { formatCount } from '@/units';
+import {
+  allAssignmentsQuery,
+  assignmentsAsked,
+  assignmentsQuery,
+  sessionQuery,
+  useSavedViews,
+  type AssignmentSummary,
+} from '@/api';
+import {
+  Badge,
+  Card,
+  DataTable,
+  ListTable,
+  Notice,
+  useList,
+  useTitle,
+  type DataColumn,
+  type ListColumn,
+  type ListFilter,
+} from '@/ui';
+import { formatCount, formatDateTime } from '@/units';
 import styles from './assignments.module.css';
 import { Invitations } from './invitations';
 import { Done, Drilling, DueDate } from './parts';
-import { byUrgency, kReleaseLabels } from './labels';
+import { kReleaseLabels } from './labels';
 
-const releaseName = ({ release }: AssignmentSummary) => kReleaseLabels[release].name;
-const releaseCell = (one: AssignmentSummary) => (
-  <Badge tone={one.release === 'held' ? 'neutral' : 'good'}>{releaseName(one)}</Badge>
-);
+/** Sorted by the server in a long list, here in a short one. */
+type AssignmentColumn = ListColumn<AssignmentSummary> & DataColumn<AssignmentSummary>;
+
+const nameColumn: AssignmentColumn = {
+  name: 'Assignment',
+  sort: 'title',
+  by: (one) => one.title,
+  cell: (one) => (
+    <>
+      <Link href={`/assignments/${one.id}`}>{one.title}</Link>
+      <div>
+        <Drilling one={one} />
+      </div>
+    </>
+  ),
+};
+const dueColumn = (now_us: number): AssignmentColumn => ({
+  name: 'Due',
+  sort: 'due',
+  by: (one) => one.due_utc_us,
+  cell: (one) => <DueDate one={one} now_us={now_us} />,
+});
+const doneColumn: AssignmentColumn = {
+  name: 'Done',
+  by: (one) => one.done / one.planned,
+  cell: (one) => <Done done={one.done} planned={one.planned} label={`Trials done of ${one.title}`} />,
+};
+const resultsColumn: AssignmentColumn = {
+  name: 'Results',
+  by: ({ release }) => kReleaseLabels[release].name,
+  cell: ({ release }) => <Badge tone={release === 'held' ? 'neutral' : 'good'}>{kReleaseLabels[release].name}</Badge>,
+};
+
+const kFilters: readonly ListFilter[] = [
+  {
+    name: 'state',
+    label: 'State',
+    choices: [
+      { value: 'unfinished', text: 'unfinished' },
+      { value: 'finished', text: 'finished' },
+    ],
+  },
+  {
+    name: 'release',
+    label: 'Results',
+    choices: (['held', 'released', 'at_once'] as const).map((value) => ({ value, text: kReleaseLabels[value].name })),
+  },
+];
+
+function Failed({ message, onRetry }: { readonly message: string; readonly onRetry: () => void }) {
+  return (
+    <Notice tone="bad" title="The assignments could not be loaded." onRetry={onRetry}>
+      {message}
+    </Notice>
+  );
+}
+
+/** The assignments of the trainee who is signed in. */
+function OwnAssignments({ now_us }: { readonly now_us: number }) {
+  const query = useQuery(allAssignmentsQuery);
+  if (query.isError) return <Failed message={query.error.message} onRetry={() => void query.refetch()} />;
+  const all = query.data?.assignments;
+  return (
+    <>
+      <Card title="To do">
+        <DataTable<AssignmentSummary>
+          caption="Assignments to do"
+          rows={all?.filter((one) => one.done < one.planned)}
+          keyOf={({ id }) => id}
+          empty="No open assignments."
+          columns={[nameColumn, dueColumn(now_us), doneColumn]}
+        />
+      </Card>
+      <Card title="Done">
+        <DataTable<AssignmentSummary>
+          caption="Assignments done"
+          rows={all?.filter((one) => one.done >= one.planned)}
+          keyOf={({ id }) => id}
+          empty="No completed assignments yet."
+          columns={[nameColumn, doneColumn, resultsColumn]}
+        />
+      </Card>
+    </>
+  );
+}
+
+/** The assignments that those who teach may see: usually the unfinished ones first, the earliest due first. */
+function TaughtAssignments({ now_us, may }: { readonly now_us: number; readonly may: boolean }) {
+  const list = useList(assignmentsAsked);
+  const query = useQuery(assignmentsQuery(list.query));
+  const views = useSavedViews('assignments');
+  if (query.isError) return <Failed message={query.error.message} onRetry={() => void query.refetch()} />;
+  return (
+    <Card title="Assignments">
+      <ListTable<AssignmentSummary>
+        caption="Assignments"
+        list={list}
+        page={query.data}
+        views={views}
+        usual="urgency"
+        searchLabel="Find by assignment, cohort or creator"
+        filters={kFilters}
+        rows={query.data?.assignments}
+        keyOf={({ id }) => id}
+        empty={may ? 'No assignments yet. Create a new assignment.' : 'No assignments yet.'}
+        minWidth={760}
+        columns={[
+          nameColumn,
+          { name: 'Cohort', sort: 'cohort', cell: (one) => one.cohort_name || '–' },
+          { name: 'Trainees', cell: (one) => formatCount(one.people ?? 0), number: true },
+          dueColumn(now_us),
+          doneColumn,
+          resultsColumn,
+          {
+            name: 'Created',
+            sort: 'made',
+            falls: true,
+            cell: (one) => `${formatDateTime(one.made_utc_us)} by ${one.made_by}`,
+          },
+        ]}
+      />
+    </Card>
+  );
+}
 
 /** Assignments of one's trainees, or of the trainee who is signed in. */
 export function AssignmentsPage() {
-  const query = useQuery(assignmentsQuery);
   const role = useQuery({ ...sessionQuery, enabled: false }).data?.role;
   const [now_us] = useState(() => Date.now() * 1000);
   const own = role === 'trainee';
   const may = role === 'admin' || role === 'faculty';
   useTitle(own ? 'My work' : 'Assignments');
-  const name: DataColumn<AssignmentSummary> = {
-    name: 'Assignment',
-    by: (one) => one.title,
-    cell: (one) => (
-      <>
-        <Link href={`/assignments/${one.id}`}>{one.title}</Link>
-        <div>
-          <Drilling one={one} />
-        </div>
-      </>
-    ),
-  };
-  const due: DataColumn<AssignmentSummary> = {
-    name: 'Due',
-    by: (one) => one.due_utc_us,
-    cell: (one) => <DueDate one={one} now_us={now_us} />,
-  };
-  const done: DataColumn<AssignmentSummary> = {
-    name: 'Done',
-    by: (one) => one.done / one.planned,
-    cell: (one) => <Done done={one.done} planned={one.planned} label={`Trials done of ${one.title}`} />,
-  };
-  const all = query.data && byUrgency(query.data.assignments);
-  const open = all?.filter((one) => one.done < one.planned),
-    over = all?.filter((one) => one.done >= one.planned);
   return (
     <div className={styles.page}>
       <div className={styles.top}>
@@ -67,56 +179,8 @@ export function AssignmentsPage() {
           </span>
         ) : null}
       </div>
-      {query.isError ? (
-        <Notice tone="bad" title="The assignments could not be loaded." onRetry={() => void query.refetch()}>
-          {query.error.message}
-        </Notice>
-      ) : null}
       {own || role === 'faculty' ? <Invitations /> : null}
-      {query.isError ? null : own ? (
-        <>
-          <Card title="To do">
-            <DataTable<AssignmentSummary>
-              caption="Assignments to do"
-              rows={open}
-              keyOf={({ id }) => id}
-              empty="No open assignments."
-              columns={[name, due, done]}
-            />
-          </Card>
-          <Card title="Done">
-            <DataTable<AssignmentSummary>
-              caption="Assignments done"
-              rows={over}
-              keyOf={({ id }) => id}
-              empty="No completed assignments yet."
-              columns={[name, done, { name: 'Results', by: releaseName, cell: releaseCell }]}
-            />
-          </Card>
-        </>
-      ) : (
-        <Card title="Assignments">
-          <DataTable<AssignmentSummary>
-            caption="Assignments"
-            order="unfinished first, the earliest due first"
-            address=""
-            rows={all}
-            keyOf={({ id }) => id}
-            empty={may ? 'No assignments yet. Create a new assignment.' : 'No assignments yet.'}
-            minWidth={760}
-            filter={{ label: 'Filter by assignment or cohort', text: (one) => `${one.title} ${one.cohort_name}` }}
-            columns={[
-              name,
-              { name: 'Cohort', by: (one) => one.cohort_name, cell: (one) => one.cohort_name || '–' },
-              { name: 'Trainees', by: (one) => one.people, cell: (one) => formatCount(one.people ?? 0), number: true },
-              due,
-              done,
-              { name: 'Results', by: releaseName, cell: releaseCell },
-              { name: 'Created by', by: (one) => one.made_by, cell: (one) => one.made_by },
-            ]}
-          />
-        </Card>
-      )}
+      {own ? <OwnAssignments now_us={now_us} /> : <TaughtAssignments now_us={now_us} may={may} />}
     </div>
   );
 }

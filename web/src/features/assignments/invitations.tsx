@@ -1,5 +1,5 @@
 import { useMutation, useQuery, useQueryClient } from '@tanstack/react-query';
-import { acceptInvitation, assignmentsQuery, declineInvitation, invitationsQuery, type Invitation } from '@/api';
+import { acceptInvitation, declineInvitation, invitationsQuery, kAssignmentLists, type Invitation } from '@/api';
 import { Button, Card, Notice, Table } from '@/ui';
 import { formatDateTime } from '@/units';
 import styles from './assignments.module.css';
@@ -13,7 +13,7 @@ export function Invitations() {
       accepts ? acceptInvitation(cohort) : declineInvitation(cohort),
     onSuccess: async (list) => {
       client.setQueryData(invitationsQuery.queryKey, list);
-      await client.invalidateQueries({ queryKey: assignmentsQuery.queryKey });
+      await client.invalidateQueries({ queryKey: kAssignmentLists });
     },
   });
   const decide = (one: Invitation, accepts: boolean) => answered.mutate({ cohort: one.cohort_id, accepts });

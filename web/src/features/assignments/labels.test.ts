@@ -1,8 +1,7 @@
 import { describe, expect, it } from 'vitest';
 import { utcMicroseconds } from '@/units';
 import { fromField, toField } from './dates';
-import type { AssignmentSummary } from '@/api';
-import { byUrgency, drillingLabel, dueState } from './labels';
+import { drillingLabel, dueState } from './labels';
 
 const now = Date.UTC(2026, 2, 10, 12) * 1000;
 const day_us = 24 * 3600 * 1e6;
@@ -37,14 +36,5 @@ describe('what is drilled', () => {
     expect(drillingLabel({ to_drill: 2, planned: 2 })).toBe('drill, then palpate');
     expect(drillingLabel({ to_drill: 1, planned: 4 })).toBe('1 of 4: drill, then palpate');
     expect(drillingLabel({ to_drill: 0, planned: 4 })).toBe('');
-  });
-});
-
-describe('a list of assignments', () => {
-  it('begins with what is unfinished, the earliest due first, and ends with what is done', () => {
-    const one = (id: string, due_utc_us: number | null, done: number) =>
-      ({ id, due_utc_us, done, planned: 4 }) as AssignmentSummary;
-    const list = [one('done long ago', 1, 4), one('no date', null, 0), one('soon', 9, 3), one('overdue', 2, 1)];
-    expect(byUrgency(list).map(({ id }) => id)).toEqual(['overdue', 'soon', 'no date', 'done long ago']);
   });
 });

@@ -24,14 +24,6 @@ export type Due = 'none' | 'late' | 'soon' | 'later';
 const kSoon_us = 3 * 24 * 3600 * 1e6;
 
 /** Urgency of an assignment that is not complete. */
-/** Unfinished before finished; of those, the earliest due first, so that what is overdue leads. */
-export function byUrgency(assignments: readonly AssignmentSummary[]): AssignmentSummary[] {
-  const finished = ({ done, planned }: AssignmentSummary) => Number(done >= planned);
-  return [...assignments].sort(
-    (a, b) => finished(a) - finished(b) || (a.due_utc_us ?? Infinity) - (b.due_utc_us ?? Infinity) || 0,
-  );
-}
-
 export function dueState(
   { due_utc_us, done, planned }: Pick<AssignmentSummary, 'due_utc_us' | 'done' | 'planned'>,
   now_us: number,

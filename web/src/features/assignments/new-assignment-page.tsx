@@ -3,8 +3,8 @@ import { useState, type FormEvent } from 'react';
 import { Link, useLocation, useSearch } from 'wouter';
 import {
   addAssignment,
-  assignmentsQuery,
-  casesQuery,
+  allCasesQuery,
+  kAssignmentLists,
   cohortQuery,
   cohortsQuery,
   kFeltSigns,
@@ -20,7 +20,7 @@ type Change = (change: Partial<Draft>) => void;
 
 /** All that can be assigned; undefined while it is on its way. */
 function useItems(): { items: Item[] | undefined; failed: Error | null; retry: () => void } {
-  const cases = useQuery(casesQuery),
+  const cases = useQuery(allCasesQuery),
     scenarios = useQuery(scenariosQuery);
   const failed = cases.error ?? scenarios.error;
   const retry = () => {
@@ -177,7 +177,7 @@ export function NewAssignmentPage() {
   const made = useMutation({
     mutationFn: addAssignment,
     onSuccess: async ({ id }) => {
-      await client.invalidateQueries({ queryKey: assignmentsQuery.queryKey, exact: true });
+      await client.invalidateQueries({ queryKey: kAssignmentLists });
       go(`/assignments/${id}`);
     },
   });

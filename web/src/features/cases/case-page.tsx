@@ -54,7 +54,7 @@ export function CasePage({ id }: { readonly id: string }) {
   const preview = useQuery(previewQuery(id));
   const palette = usePalette();
   const found = query.data;
-  const summary = useQuery(casesQuery).data?.cases.find((one) => one.id === id);
+  const summary = useQuery(casesQuery({ search: id })).data?.cases.find((one) => one.id === id);
   useTitle(found?.title ?? 'Case');
   return (
     <div className={styles.page}>

@@ -2,16 +2,31 @@ import { useMutation, useQuery, useQueryClient } from '@tanstack/react-query';
 import { useEffect, useRef } from 'react';
 import { Link } from 'wouter';
 import {
+  allCasesQuery,
+  casesAsked,
   casesQuery,
   makingsQuery,
   retireCase,
   sessionQuery,
   sourceVolumesQuery,
+  useSavedViews,
   type CaseSummary,
   type Making,
   type SourceVolume,
 } from '@/api';
-import { Badge, Button, Card, DataTable, Notice, Progress, Table, useTitle } from '@/ui';
+import {
+  Badge,
+  Button,
+  Card,
+  DataTable,
+  ListTable,
+  Notice,
+  Progress,
+  Table,
+  useList,
+  useTitle,
+  type ListFilter,
+} from '@/ui';
 import { formatCount, formatDateTime, formatShare, share } from '@/units';
 import styles from './cases.module.css';
 import { FeltSign } from './certificate';
@@ -63,7 +78,7 @@ function CasesInPreparation() {
   const before = useRef(done);
   useEffect(() => {
     if (before.current !== undefined && done !== before.current)
-      void client.invalidateQueries({ queryKey: casesQuery.queryKey });
+      void client.invalidateQueries({ queryKey: allCasesQuery.queryKey });
     before.current = done;
   }, [done, client]);
   if (shown.length === 0) return null;
@@ -98,16 +113,37 @@ function CasesInPreparation() {
   );
 }
 
+const kFilters: readonly ListFilter[] = [
+  {
+    name: 'state',
+    label: 'State',
+    choices: [
+      { value: 'available', text: 'available' },
+      { value: 'retired', text: 'retired' },
+    ],
+  },
+  {
+    name: 'channel',
+    label: 'Channel',
+    choices: [
+      { value: 'drilled', text: 'drilled' },
+      { value: 'planned', text: 'trainee drills' },
+    ],
+  },
+];
+
 /** Cases of the palpation rig: volumes to create them from, cases in preparation, all cases. */
 export function CasesPage() {
   useTitle('Cases');
   const client = useQueryClient();
-  const query = useQuery(casesQuery);
+  const list = useList(casesAsked);
+  const query = useQuery(casesQuery(list.query));
+  const views = useSavedViews('cases');
   const role = useQuery({ ...sessionQuery, enabled: false }).data?.role;
   const may = role === 'admin' || role === 'faculty';
   const retired = useMutation({
     mutationFn: ({ one, away }: { one: CaseSummary; away: boolean }) => retireCase(one.id, away),
-    onSuccess: () => client.invalidateQueries({ queryKey: casesQuery.queryKey }),
+    onSuccess: () => client.invalidateQueries({ queryKey: allCasesQuery.queryKey }),
   });
   const last = retired.data === undefined && retired.isSuccess ? retired.variables : null;
   return (
@@ -129,26 +165,29 @@ export function CasesPage() {
       ) : (
         <Card title="Cases" aside={may ? <Link href="/assignments/new">Assign cases</Link> : undefined}>
           <div className={styles.stack}>
-            <DataTable<CaseSummary>
-              address=""
+            <ListTable<CaseSummary>
               caption="Cases"
+              list={list}
+              page={query.data}
+              views={views}
+              usual="published"
+              searchLabel="Find by case or source"
+              filters={kFilters}
               rows={query.data?.cases}
               keyOf={({ id }) => id}
               empty="No cases yet. Create one from a volume."
               minWidth={640}
-              filter={{ label: 'Filter by case or source', text: (one) => `${one.title} ${one.source}` }}
               columns={[
                 {
                   name: 'Case',
-                  by: (one) => one.title,
+                  sort: 'title',
                   cell: (one) => <Link href={`/cases/${one.id}`}>{one.title}</Link>,
                 },
-                { name: 'Source', by: (one) => one.source, cell: (one) => one.source },
-                { name: 'Created', by: (one) => one.made_utc_us, cell: (one) => formatDateTime(one.made_utc_us) },
-                { name: 'Trials', by: (one) => one.trials, cell: (one) => formatCount(one.trials), number: true },
+                { name: 'Source', sort: 'source', cell: (one) => one.source },
+                { name: 'Created', sort: 'made', falls: true, cell: (one) => formatDateTime(one.made_utc_us) },
+                { name: 'Trials', cell: (one) => formatCount(one.trials), number: true },
                 {
                   name: 'State',
-                  by: (one) => one.retired,
                   cell: (one) =>
                     one.retired ? (
                       <Badge>retired</Badge>

@@ -1,7 +1,7 @@
 import { useMutation, useQuery, useQueryClient } from '@tanstack/react-query';
 import { useState } from 'react';
 import {
-  accountsQuery,
+  allAccountsQuery,
   changeAccounts,
   cohortsQuery,
   kRoles,
@@ -109,13 +109,13 @@ function Change({
 /** Many accounts chosen from the list, and changed at once: all or none. */
 export function ChangePage() {
   const client = useQueryClient();
-  const query = useQuery(accountsQuery);
+  const query = useQuery(allAccountsQuery);
   const own = useQuery({ ...sessionQuery, enabled: false }).data?.id;
   const [ids, setIds] = useState<ReadonlySet<string>>(new Set());
   const [what, setWhat] = useState<What | null>(null);
   const changed = useMutation({
     mutationFn: changeAccounts,
-    onSuccess: () => client.invalidateQueries({ queryKey: accountsQuery.queryKey }),
+    onSuccess: () => client.invalidateQueries({ queryKey: allAccountsQuery.queryKey }),
   });
   const all = query.data?.accounts.filter(({ id }) => id !== own);
   const chosen = (all ?? []).filter(({ id }) => ids.has(id));

@@ -1,7 +1,7 @@
 import { useMutation, useQuery, useQueryClient } from '@tanstack/react-query';
 import { useState } from 'react';
 import {
-  accountsQuery,
+  allAccountsQuery,
   addCohort,
   classCheckQuery,
   cohortsQuery,
@@ -97,7 +97,7 @@ export function ImportPage() {
       return importClass({ ...list, cohort: into });
     },
     onSuccess: async () => {
-      await client.invalidateQueries({ queryKey: accountsQuery.queryKey });
+      await client.invalidateQueries({ queryKey: allAccountsQuery.queryKey });
       await client.invalidateQueries({ queryKey: cohortsQuery.queryKey });
     },
   });

@@ -3,8 +3,8 @@ import { useState } from 'react';
 import { Link } from 'wouter';
 import {
   addCriteria,
-  assignmentsQuery,
-  casesQuery,
+  allAssignmentsQuery,
+  allCasesQuery,
   criteriaOf,
   criteriaQuery,
   sessionQuery,
@@ -32,8 +32,8 @@ function Stating({ entries }: { readonly entries: readonly CriteriaEntry[] }) {
   const [subject, setSubject] = useState('');
   const [reason, setReason] = useState('');
   const [requirements, setRequirements] = useState<readonly RequirementDraft[]>([newRequirement('recognition')]);
-  const cases = useQuery({ ...casesQuery, enabled: kind === 'case' }).data?.cases ?? [];
-  const assignments = useQuery({ ...assignmentsQuery, enabled: kind === 'assignment' }).data?.assignments ?? [];
+  const cases = useQuery({ ...allCasesQuery, enabled: kind === 'case' }).data?.cases ?? [];
+  const assignments = useQuery({ ...allAssignmentsQuery, enabled: kind === 'assignment' }).data?.assignments ?? [];
   const made = useMutation({
     mutationFn: () =>
       addCriteria(

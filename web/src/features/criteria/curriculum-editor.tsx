@@ -3,7 +3,7 @@ import { useState } from 'react';
 import { Link, useLocation } from 'wouter';
 import {
   addCurriculum,
-  casesQuery,
+  allCasesQuery,
   curriculaQuery,
   scenariosQuery,
   type Curriculum,
@@ -28,7 +28,7 @@ const changedAt = ({ versions }: Curriculum): number => versions.at(-1)?.made_ut
 
 /** All cases and scenarios that a step can have, and those that its steps have already. */
 function useChoices(there: readonly CaseChoice[]): readonly CaseChoice[] | undefined {
-  const cases = useQuery(casesQuery).data?.cases;
+  const cases = useQuery(allCasesQuery).data?.cases;
   const scenarios = useQuery(scenariosQuery).data;
   if (!cases || !scenarios) return undefined;
   const known: readonly CaseChoice[] = [

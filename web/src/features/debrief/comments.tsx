@@ -1,6 +1,6 @@
 import { useMutation, useQuery, useQueryClient } from '@tanstack/react-query';
 import { useId, useState, useSyncExternalStore, type FormEvent } from 'react';
-import { addComment, assignmentsQuery, commentsQuery, removeComment, type TrialComment } from '@/api';
+import { addComment, commentsQuery, removeComment, type TrialComment } from '@/api';
 import type { Cursor } from '@/charts';
 import { Button, Notice, Skeleton } from '@/ui';
 import { formatDateTime, formatTime, second } from '@/units';
@@ -29,7 +29,7 @@ function CommentForm({
     mutationFn: () => addComment(trial, moment ? Math.round((cursor.now() ?? 0) * 100) / 100 : null, text.trim()),
     onSuccess: (all) => {
       client.setQueryData(commentsQuery(trial).queryKey, all);
-      void client.invalidateQueries({ queryKey: assignmentsQuery.queryKey });
+      void client.invalidateQueries({ queryKey: ['assignments'] });
       setText('');
       onAdded();
     },

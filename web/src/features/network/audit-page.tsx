@@ -1,8 +1,9 @@
-import { useInfiniteQuery, useMutation } from '@tanstack/react-query';
-import { auditQuery, checkAudit, type AuditRow } from '@/api';
-import { Button, Card, DataTable, Notice, Term } from '@/ui';
+import { useMutation, useQuery } from '@tanstack/react-query';
+import { auditAsked, auditQuery, checkAudit, kRoles, useSavedViews, type AuditRow } from '@/api';
+import { Button, Card, ListTable, Notice, Term, useList, type ListFilter } from '@/ui';
 import { formatClock, formatCount } from '@/units';
 import { Frame } from './frame';
+import { roleName } from './labels';
 import styles from './network.module.css';
 
 const sentenceCase = (operation: string) => {
@@ -46,10 +47,24 @@ function Check() {
   );
 }
 
+const kFilters: readonly ListFilter[] = [
+  {
+    name: 'role',
+    label: 'Role',
+    choices: [
+      ...kRoles.map((value) => ({ value, text: roleName(value) })),
+      { value: 'station', text: 'Station' },
+      { value: 'command line', text: 'Command line' },
+      { value: 'server', text: 'Server' },
+    ],
+  },
+];
+
 /** The audit trail and its integrity check. */
 export function AuditPage() {
-  const query = useInfiniteQuery(auditQuery);
-  const rows = query.data?.pages.flatMap((page) => page.rows);
+  const list = useList(auditAsked);
+  const query = useQuery(auditQuery(list.query));
+  const views = useSavedViews('audit');
   return (
     <Frame
       at="audit"
@@ -64,35 +79,41 @@ export function AuditPage() {
         </Notice>
       ) : null}
       <Card title="Changes">
-        <DataTable<AuditRow>
-          address=""
+        <ListTable<AuditRow>
           caption="Changes"
-          order="newest first"
-          partial={query.hasNextPage}
+          list={list}
+          page={query.data}
+          views={views}
+          usual="number"
+          searchLabel="Find by account, action, object or details"
+          filters={kFilters}
           minWidth={760}
-          rows={rows}
+          rows={query.data?.rows}
           keyOf={({ number }) => String(number)}
           empty="No changes yet."
-          filter={{
-            label: 'Filter by account, action or object',
-            text: (one) => `${one.who} ${one.role} ${sentenceCase(one.what)} ${one.object} ${detailOf(one.detail)}`,
-          }}
           columns={[
-            { name: 'Row', by: (one) => one.number, cell: (one) => formatCount(one.number) },
-            { name: 'Time', by: (one) => one.at_utc_us, cell: (one) => formatClock(one.at_utc_us) },
+            { name: 'Row', sort: 'number', falls: true, cell: (one) => formatCount(one.number) },
+            { name: 'Time', cell: (one) => formatClock(one.at_utc_us) },
             {
               name: 'Account',
-              by: (one) => one.who,
+              sort: 'who',
               cell: (one) => (
                 <>
                   {one.who} <span className={styles.muted}>{one.role}</span>
                 </>
               ),
             },
-            { name: 'Action', by: (one) => sentenceCase(one.what), cell: (one) => sentenceCase(one.what) },
+            {
+              name: 'Action',
+              sort: 'what',
+              cell: (one) => (
+                <>
+                  {sentenceCase(one.what)} <span className={styles.muted}>{one.what}</span>
+                </>
+              ),
+            },
             {
               name: 'Object',
-              by: (one) => one.object,
               cell: (one) => <span className={styles.muted}>{one.object}</span>,
             },
             { name: 'Details', cell: (one) => <span className={styles.muted}>{detailOf(one.detail)}</span> },
@@ -106,13 +127,6 @@ export function AuditPage() {
             },
           ]}
         />
-        {query.hasNextPage ? (
-          <p>
-            <Button onClick={() => void query.fetchNextPage()} disabled={query.isFetchingNextPage}>
-              {query.isFetchingNextPage ? 'Loading…' : 'Older changes'}
-            </Button>
-          </p>
-        ) : null}
       </Card>
     </Frame>
   );

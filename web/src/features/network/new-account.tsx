@@ -1,6 +1,6 @@
 import { useMutation, useQueryClient } from '@tanstack/react-query';
 import { useState, type FormEvent } from 'react';
-import { accountsQuery, addAccount, kRoles, type Role } from '@/api';
+import { allAccountsQuery, addAccount, kRoles, type Role } from '@/api';
 import { AskDialog, Button, Card, Field, Notice, Select } from '@/ui';
 import styles from './network.module.css';
 import { kRoleLabels } from './labels';
@@ -38,7 +38,7 @@ export function NewAccountCard() {
       setName('');
       setBadgeText('');
       setPin('');
-      await client.invalidateQueries({ queryKey: accountsQuery.queryKey });
+      await client.invalidateQueries({ queryKey: allAccountsQuery.queryKey });
     },
   });
   const [asking, setAsking] = useState(false);

@@ -2,17 +2,20 @@ import { useMutation, useQuery, useQueryClient } from '@tanstack/react-query';
 import { useState } from 'react';
 import { Link } from 'wouter';
 import {
+  accountsAsked,
   accountsQuery,
+  allAccountsQuery,
   kRoles,
   resetPassword,
   sessionQuery,
   setAccountRole,
   setAccountState,
   setBadge,
+  useSavedViews,
   type Account,
   type Role,
 } from '@/api';
-import { AskDialog, Badge, Button, Card, DataTable, Field, Notice } from '@/ui';
+import { AskDialog, Badge, Button, Card, Field, ListTable, Notice, useList, type ListFilter } from '@/ui';
 import { formatDateTime } from '@/units';
 import { Frame } from './frame';
 import { NewAccountCard, Once } from './new-account';
@@ -58,14 +61,28 @@ function BadgeDialog({
 const stateOf = ({ state, must_change }: Account) =>
   state === 'disabled' ? 'disabled' : must_change ? 'first password not changed yet' : 'active';
 
+const kFilters: readonly ListFilter[] = [
+  { name: 'role', label: 'Role', choices: kRoles.map((value) => ({ value, text: roleName(value) })) },
+  {
+    name: 'state',
+    label: 'State',
+    choices: [
+      { value: 'active', text: 'active' },
+      { value: 'disabled', text: 'disabled' },
+    ],
+  },
+];
+
 /** Accounts and their roles. */
 export function PeoplePage() {
   const client = useQueryClient();
-  const query = useQuery(accountsQuery);
+  const list = useList(accountsAsked);
+  const query = useQuery(accountsQuery(list.query));
+  const views = useSavedViews('accounts');
   const own = useQuery({ ...sessionQuery, enabled: false }).data?.id;
   const [action, setAction] = useState<AccountAction | null>(null);
   const [password, setPassword] = useState<{ name: string; secret: string } | null>(null);
-  const fresh = () => client.invalidateQueries({ queryKey: accountsQuery.queryKey });
+  const fresh = () => client.invalidateQueries({ queryKey: allAccountsQuery.queryKey });
   const role = useMutation({
     mutationFn: ({ id, to }: { id: string; to: Role }) => setAccountRole(id, to),
     onSuccess: fresh,
@@ -99,22 +116,23 @@ export function PeoplePage() {
       </p>
       <NewAccountCard />
       <Card title="Accounts">
-        <DataTable<Account>
-          address=""
+        <ListTable<Account>
           caption="Accounts"
+          list={list}
+          page={query.data}
+          views={views}
+          usual="name"
+          searchLabel="Find by name, badge or level"
+          filters={kFilters}
           minWidth={1040}
           rows={query.data?.accounts}
           keyOf={({ id }) => id}
           empty="No accounts yet."
-          filter={{
-            label: 'Filter by name, role or badge',
-            text: (one) => `${one.name} ${roleName(one.role)} ${one.badge ?? ''}`,
-          }}
           columns={[
-            { name: 'Name', by: (one) => one.name, cell: (one) => one.name },
+            { name: 'Name', sort: 'name', cell: (one) => one.name },
             {
               name: 'Role',
-              by: (one) => roleName(one.role),
+              sort: 'role',
               cell: (one) => (
                 <span className={styles.role}>
                   <select
@@ -137,7 +155,6 @@ export function PeoplePage() {
             },
             {
               name: 'State',
-              by: stateOf,
               cell: (one) =>
                 one.state === 'disabled' ? (
                   <Badge tone="warn">{stateOf(one)}</Badge>
@@ -149,11 +166,10 @@ export function PeoplePage() {
             },
             {
               name: 'Badge',
-              by: (one) => one.badge,
               cell: (one) => `${one.badge ?? '–'}${one.has_pin ? ', PIN' : ''}`,
             },
-            { name: 'One-time codes', by: (one) => one.has_codes, cell: (one) => (one.has_codes ? 'on' : 'off') },
-            { name: 'Created', by: (one) => one.made_utc_us, cell: (one) => formatDateTime(one.made_utc_us) },
+            { name: 'One-time codes', cell: (one) => (one.has_codes ? 'on' : 'off') },
+            { name: 'Created', sort: 'made', falls: true, cell: (one) => formatDateTime(one.made_utc_us) },
             {
               name: <span className="hidden-visually">Actions</span>,
               cell: (one) => (

@@ -10,12 +10,12 @@ const kStateLabels = { arriving: 'uploading', counts: 'valid', invalid: 'invalid
 export const seriesAddress = (id: string) =>
   id.startsWith('a-') ? `/assignments/${encodeURIComponent(id)}` : `/studies/${encodeURIComponent(id)}`;
 
-/** Position of the trial in its study or assignment, and whether it is valid. */
-export function StudyPosition({ position }: { readonly position: StudyPlace }) {
+/** Position of the trial in its study or assignment, and whether it is valid; by the person's name where it is known. */
+export function StudyPosition({ position, person }: { readonly position: StudyPlace; readonly person: string }) {
   return (
     <p className={styles.place}>
       <span>
-        Trial {formatCount(position.number)} of {position.participant} in{' '}
+        Trial {formatCount(position.number)} of {person || position.participant} in{' '}
         <Link href={seriesAddress(position.id)}>{position.title}</Link>
       </span>
       <Badge tone={position.state === 'counts' ? 'good' : 'warn'}>{kStateLabels[position.state]}</Badge>

@@ -27,7 +27,7 @@ function Header({ trial }: { readonly trial: Trial }) {
         {trial.simulated ? <Badge tone="warn">simulated</Badge> : null}
         {trial.complete ? null : <Badge tone="bad">incomplete recording</Badge>}
       </div>
-      {trial.study ? <StudyPosition position={trial.study} /> : null}
+      {trial.study ? <StudyPosition position={trial.study} person={trial.person} /> : null}
       <div className={styles.facts}>
         <Facts
           facts={[

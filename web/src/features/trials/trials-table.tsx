@@ -1,8 +1,8 @@
+import type { ComponentProps } from 'react';
 import { Link } from 'wouter';
 import { personOf, type TrialSummary } from '@/api';
-import { Badge, SortHead, Table, type Column, type DataColumn } from '@/ui';
+import { Badge, ListTable, type ListColumn, type ListFilter } from '@/ui';
 import { formatDateTime, formatDuration, isoDateTime } from '@/units';
-import type { TrialView } from './search';
 import styles from './trials-table.module.css';
 
 function AnswerCell({ trial }: { readonly trial: TrialSummary }) {
@@ -22,12 +22,11 @@ function StateCell({ trial }: { readonly trial: TrialSummary }) {
   }
 }
 
-type Sort = TrialView['sort'];
-
-const kColumns: readonly (DataColumn<TrialSummary> & { readonly sort?: Sort })[] = [
+const kColumns: readonly ListColumn<TrialSummary>[] = [
   {
     name: 'Started',
     sort: 'started',
+    falls: true,
     cell: (trial) => <time dateTime={isoDateTime(trial.started_utc_us)}>{formatDateTime(trial.started_utc_us)}</time>,
   },
   {
@@ -55,31 +54,48 @@ const kColumns: readonly (DataColumn<TrialSummary> & { readonly sort?: Sort })[]
   { name: 'State', cell: (trial) => <StateCell trial={trial} /> },
 ];
 
-interface Props {
+const kFilters: readonly ListFilter[] = [
+  {
+    name: 'answer',
+    label: 'Answer',
+    choices: [
+      { value: 'correct', text: 'correct' },
+      { value: 'incorrect', text: 'incorrect' },
+      { value: 'none', text: 'no answer' },
+    ],
+  },
+  {
+    name: 'state',
+    label: 'State',
+    choices: [
+      { value: 'assessing', text: 'being assessed' },
+      { value: 'failed', text: 'failed' },
+    ],
+  },
+];
+
+type Props = Pick<ComponentProps<typeof ListTable<TrialSummary>>, 'list' | 'page' | 'views'> & {
   /** `undefined` while loading: rows of the same height hold the place. */
   readonly trials: readonly TrialSummary[] | undefined;
-  readonly view: Pick<TrialView, 'sort' | 'order'>;
-  readonly onSort: (sort: Sort, order: TrialView['order']) => void;
-}
+  readonly remark?: string;
+};
 
-/** The page of trials that the server sorted. */
-export function TrialsTable({ trials, view, onSort }: Props) {
-  const columns = kColumns.map((column): Column<TrialSummary> => {
-    const { sort } = column;
-    if (sort === undefined) return column;
-    const sorted = view.sort === sort ? view.order : undefined;
-    const press = () => onSort(sort, sorted === 'ascending' ? 'descending' : 'ascending');
-    return { ...column, sorted, name: <SortHead column={column} sorted={sorted} onPress={press} /> };
-  });
+/** A page of trials that the server found. */
+export function TrialsTable({ trials, remark = '', ...rest }: Props) {
   return (
-    <Table
+    <ListTable<TrialSummary>
+      {...rest}
       caption="Trials"
       className={styles.frame}
       rows={trials}
       keyOf={({ id }) => id}
-      empty="No trials match."
+      empty="No trials yet. A trial appears here after a station has uploaded it completely."
       waiting={8}
-      columns={columns}
+      columns={kColumns}
+      usual="started"
+      searchLabel="Find by person, case or station"
+      filters={kFilters}
+      remark={remark}
     />
   );
 }
