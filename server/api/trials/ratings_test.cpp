@@ -1,7 +1,6 @@
 /// Ratings by people: who rates whose trial, who sees a rating and when, and how far raters agree.
 #include "db/store/trials/ratings.hpp"
 
-#include "db/store/cohort/cohort.hpp"
 #include "server/api/people/people_test_support.hpp"
 #include "server/jobs/publish.hpp"
 #include "tests/support/server/world.hpp"
@@ -188,17 +187,17 @@ TEST_F(RatingsByPeople, ARubricHasVersionsAndARequestKeepsItsOwn) {
   EXPECT_EQ(post("dora", "/rubrics", {{"id", "Osats!"}, {"rubric", rubric()}}).status, 400);
 }
 
-TEST_F(RatingsByPeople, ACompleteOneIsAColumnOfTheCohort) {
-  const auto column = [&] {
-    const auto trials = store_.read(
-        [](store::Reading& tx) { return store::trials_for_teaching(tx, "a-tom", {}, 10); });
-    return trials.value().front().metrics;
+TEST_F(RatingsByPeople, ACompleteOneIsAScoreOfItsTrial) {
+  const auto scores = [&] {
+    const auto all = store_.read([](store::Reading& tx) { return store::rating_scores(tx); });
+    const auto found = all.value().find(trial_of("tom"));
+    return found == all.value().end() ? std::map<std::string, double>() : found->second;
   };
   ask_for();
   rate("fay", {4, 5});
-  EXPECT_FALSE(column().contains("rating.osats_v1"));
+  EXPECT_TRUE(scores().empty());
   rate("flo", {2, 3});
-  EXPECT_EQ(column()["rating.osats_v1"], 7.0) << "the mean of 9 and 5";
+  EXPECT_EQ(scores().at("rating.osats_v1"), 7.0) << "the mean of 9 and 5";
 }
 
 /// Four trials of tom's, rated by fay and flo.
