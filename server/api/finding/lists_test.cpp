@@ -169,7 +169,7 @@ TEST_F(FoundLists, CasesAreFoundByTitleSourceAndState) {
   EXPECT_EQ(titles("?search=scenario"), Texts{});
   EXPECT_EQ(titles("?sort=title"), (Texts{"L3", "L4, lateral"}));
   EXPECT_EQ(titles("?channel=planned"), Texts{"L4, lateral"});
-  EXPECT_EQ(post("ann", "/cases/" + other + "/retire", {{"retired", true}}).status, 200);
+  EXPECT_EQ(post("ann", "/cases/" + other + "/retire", {{"retired", true}}).status, 204);
   EXPECT_EQ(titles("?state=available"), Texts{"L3"});
   EXPECT_EQ(found("rex", "/cases?state=retired")["total"], 1);
   for (const char* who : {"tom", "ted"}) EXPECT_EQ(get(who, "/cases?search=L3").status, 403) << who;
