@@ -104,7 +104,7 @@ core::Result<void> add_rating_request(Writing& tx, const RatingRequest& of) {
       "made_by) values (?, ?, ?, ?, ?, ?, ?)",
       {of.trial_id, of.rubric_id, of.version, bool_value(of.blind), of.raters, of.made_utc_us,
        of.made_by}));
-  return add_trial_entry(tx, of.trial_id);
+  return renew_trial_entry(tx, of.trial_id);
 }
 
 core::Result<std::vector<RatingRequest>> rating_requests(Reading& tx, const std::string& trial_id) {
@@ -126,7 +126,7 @@ core::Result<void> remove_rating_request(Writing& tx, const std::string& trial_i
                  "to be rated"};
   TRY(tx.query("delete from rating_requests where trial_id = ? and rubric_id = ?",
                {trial_id, rubric_id}));
-  return add_trial_entry(tx, trial_id);
+  return renew_trial_entry(tx, trial_id);
 }
 
 core::Result<void> add_rating(Writing& tx, const Rating& rating) {
@@ -147,7 +147,7 @@ core::Result<void> add_rating(Writing& tx, const Rating& rating) {
       {rating.trial_id, rating.rubric_id, rating.rater_id, before + 1, scores.dump(),
        rating.comment, before > 0 ? rating.reason : std::string(), bool_value(!request.complete()),
        rating.made_utc_us}));
-  return add_trial_entry(tx, rating.trial_id);
+  return renew_trial_entry(tx, rating.trial_id);
 }
 
 core::Result<std::vector<Rating>> ratings_of(Reading& tx, const std::string& trial_id) {

@@ -24,8 +24,10 @@ inline constexpr const char* kTrialsFrom =
 /// " and …" for the trials that `whose` reaches and that are not blind; its values are added.
 std::string reached_sql(const TrialFilter& whose, std::vector<Value>& values);
 
-/// Puts a trial into the list by which trials are found, in the place of its row of before.
+/// Puts a trial into the list by which trials are found.
 core::Result<void> add_trial_entry(Writing& tx, const std::string& id);
+/// The same in the place of its row of before: what may be found of it has changed.
+core::Result<void> renew_trial_entry(Writing& tx, const std::string& id);
 
 /// Errors: corrupt for a state that is none.
 core::Result<TrialSummary> summary_from(const Row& row);

@@ -92,7 +92,6 @@ std::string reached_sql(const TrialFilter& whose, std::vector<Value>& values) {
 }
 
 core::Result<void> add_trial_entry(Writing& tx, const std::string& id) {
-  TRY(tx.query("delete from trial_entries where trial_id = ?", {id}));
   // A name that is hidden (ratings.hpp) is in no word by which the trial is found or sorted.
   const std::string hidden = "case when " + name_hidden_sql() + " then '' else ";
   return done(tx.query(
@@ -107,6 +106,11 @@ core::Result<void> add_trial_entry(Writing& tx, const std::string& id) {
           "assignment_people p on p.study_id = k.study_id and p.participant = k.participant left "
           "join accounts u on u.id = p.account_id where t.id = ?",
       {id}));
+}
+
+core::Result<void> renew_trial_entry(Writing& tx, const std::string& id) {
+  TRY(tx.query("delete from trial_entries where trial_id = ?", {id}));
+  return add_trial_entry(tx, id);
 }
 
 const ListShape& trial_list() {
@@ -139,8 +143,9 @@ core::Result<FoundTrials> find_trials(Reading& tx, const ListRequest& request,
   auto found = TRY(find_keys(tx, trial_list(), request, entries_reached(whose, trainees)));
   SqlPart reached;
   reached.sql = reached_sql(whose, reached.values);
-  const SqlPart select{std::string("select ") + kSummaryColumns + ", " + name_sql(kPersonColumn, whose) + ", " +
-                       name_sql("t.operator_name", whose) + kTrialsFrom + "where t.id in"};
+  const SqlPart select{std::string("select ") + kSummaryColumns + ", " +
+                       name_sql(kPersonColumn, whose) + ", " + name_sql("t.operator_name", whose) +
+                       kTrialsFrom + "where t.id in"};
   auto trials = TRY(all_of(rows_of_keys(tx, select, found.keys, reached), summary_with_person));
   return FoundTrials{std::move(trials), std::move(found.page)};
 }

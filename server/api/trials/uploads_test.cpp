@@ -242,7 +242,7 @@ TEST_F(Uploads, PartialFilesThatBelongToNoOpenUploadGo) {
 TEST_F(Uploads, ACommitThatFailsAtAnyStepCanBeDoneAgain) {
   for (int n = 1; n < 100; ++n) {
     ASSERT_TRUE(store_.write([](store::Writing& tx) -> core::Result<void> {
-      for (const char* table : {"jobs", "trials", "uploads", "objects"})
+      for (const char* table : {"jobs", "trial_entries", "trials", "uploads", "objects"})
         TRY(tx.query(std::string("delete from ") + table));
       return {};
     }));
