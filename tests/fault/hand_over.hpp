@@ -13,7 +13,7 @@ using namespace world;
 
 constexpr std::uint32_t kSamples = 400;
 constexpr std::size_t kPieces = 10;       // and a commit a trial
-constexpr std::size_t kMostListed = 500;  // trials in one answer
+constexpr std::size_t kMostListed = 200;  // trials in one answer
 
 /// What the station knows of the trial it is handing over.
 struct HandOver {
@@ -103,7 +103,7 @@ class KilledServer {
   /// As many as were acknowledged, and perhaps the one whose acknowledgement was cut off; each
   /// whole.
   void check_trials(Client& client) {
-    const Answer list = client.ask("GET", "/api/v1/trials?limit=500", admin_);
+    const Answer list = client.ask("GET", "/api/v1/trials?limit=200", admin_);
     ASSERT_EQ(list.status, 200) << list.body;
     const auto trials = list.json()["trials"];
     const auto done = static_cast<std::size_t>(done_);
