@@ -320,6 +320,25 @@ void differentiate(const Residual& residual, Solution& solution) {
   differentiate(residual, solution, all);
 }
 
+namespace {
+
+/// A place that the data do not tell from the given one is the given one: where a probe only passes it, the loss is flat over
+/// some micrometres about a border, and yet a probe that rests there would be on its wrong side.
+Solution at_given_places(const Residual& residual, Solution at) {
+  for (std::size_t c = 0; c < at.parameters.size(); ++c) {
+    const Parameter& p = at.parameters[c];
+    if (!(p.rough > 0.0) || at.values[c] == p.start) continue;
+    Solution given = at;
+    given.values[c] = p.start;
+    given.residual = residual(at.structure, given.values);
+    judge(given, at.scale);
+    if (given.loss <= at.loss + kSolver.given_place) at = std::move(given);
+  }
+  return at;
+}
+
+}  // namespace
+
 Solution polish(const Residual& residual, Solution at, const SearchOptions& options) {
   bool any = false;
   for (int round = 0; round < kSolver.rough_rounds; ++round) {
@@ -378,7 +397,7 @@ Solution search(const Residual& residual, const Structure& structure, std::vecto
     return at;
   }
   const bool stale = fresh.size() < at.parameters.size();
-  return Search(residual, std::move(at), options).run(fresh, stale);
+  return at_given_places(residual, Search(residual, std::move(at), options).run(fresh, stale));
 }
 
 }  // namespace lab
