@@ -91,7 +91,7 @@ describe.skipIf(bin === undefined)('the first days of a programme', () => {
     await look(admin, 'change');
     await admin.goto('/network/people');
     await admin.getByLabel('Name', { exact: true }).fill('Second admin');
-    await admin.getByLabel('Role', { exact: true }).selectOption('admin');
+    await admin.getByRole('region', { name: 'New account' }).getByLabel('Role', { exact: true }).selectOption('admin');
     await admin.getByRole('button', { name: 'Create account' }).click();
     await admin.getByRole('heading', { name: 'Make Second admin an administrator?' }).waitFor();
     await admin.getByRole('button', { name: 'Cancel' }).click();
