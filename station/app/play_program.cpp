@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cctype>
 #include <chrono>
 #include <thread>
 
@@ -31,12 +32,14 @@ Result<trial::ProbingSet> joined(const std::filesystem::path& with,
   trial::ProbingSet out;
   if (!with.empty()) out = TRY(trial::read_probing_set(with));
   for (trial::ProbingMeasurement& trial : played) {
+    // The program's name comes from a file and becomes a file's name.
+    std::ranges::replace_if(
+        trial.id, [](unsigned char c) { return std::isalnum(c) == 0; }, '-');
     const std::string name = trial.id;
     for (int k = 2;
          std::ranges::any_of(out.trials, [&](const auto& other) { return other.id == trial.id; });
          ++k)
       trial.id = fmt::format("{}-again-{}", name, k);
-    std::ranges::replace(trial.id, ' ', '-');
     trial.file = trial.id + ".csv";
     out.trials.push_back(std::move(trial));
   }

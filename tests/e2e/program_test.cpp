@@ -135,6 +135,18 @@ TEST_F(ProgramPlayed, NewTrialsJoinTheSetBefore) {
   EXPECT_EQ((*set)["simulated"], true);
 }
 
+TEST_F(ProgramPlayed, ANameThatLooksLikeAPathStaysInItsFolder) {
+  auto named = *core::read_json(at("strokes.json"));
+  named["name"] = "../../escaped";
+  write("named.json", named);
+  const Ran played = ran(playing("named.json", "set") + " --repetitions 1");
+  ASSERT_EQ(played.code, 0) << played.out;
+  const auto set = core::read_json(fs::path(at("set")) / "set.json");
+  ASSERT_TRUE(set);
+  EXPECT_EQ((*set)["trials"][0]["file"], "------escaped-1.csv");
+  EXPECT_TRUE(fs::exists(fs::path(at("set")) / "------escaped-1.csv"));
+}
+
 TEST_F(ProgramPlayed, RefusesWhatCannotBePlayed) {
   const auto refused = [&](const std::string& command) {
     const Ran result = ran(command);
