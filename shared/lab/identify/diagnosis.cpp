@@ -140,9 +140,8 @@ double stated_probability(const Diagnosis& d, const ResidualDependence& rest, do
       std::clamp(std::max(probability_of_more(rest, d.final_fit),
                           d.effects.size() >= kAnswer.imitating_effects ? kAnswer.imitation : 0.0),
                  kSettings.posterior.unforeseen, 1.0 - kSettings.posterior.unforeseen);
-  // The verdict that more is missing is given where held-out trials show it: it is at least as probable as not.
   return d.verdict == Verdict::partly || d.verdict == Verdict::unexplained
-             ? std::max(0.5, more)
+             ? more
              : posterior * (1.0 - more);
 }
 
