@@ -158,14 +158,57 @@ void read_product(Reader& in, Formula& out) {
     in.fail(fmt::format("more than {} terms: multiply fewer columns", kMostTerms));
 }
 
-void read_term(Reader& in, Formula& out) {
-  if (in.take('(')) {
-    if (in.word() != "1") in.fail("only a random intercept, (1|group), can stand in brackets");
-    in.need('|');
-    if (!out.group.empty()) in.fail("one random intercept is all that is possible");
-    out.group = in.word();
-    return in.need(')');
+/// "a", "a:b", or "a/b" for a and a:b.
+std::vector<std::vector<std::string>> read_grouping(Reader& in) {
+  std::vector<std::vector<std::string>> out{{in.word()}};
+  while (in.error().empty()) {
+    const bool nested = in.take('/');
+    if (!nested && !in.take(':')) break;
+    const std::string next = in.word();
+    if (std::ranges::find(out.back(), next) != out.back().end())
+      in.fail(fmt::format("'{}' stands there twice", next));
+    auto finer = out.back();
+    finer.push_back(next);
+    if (nested)
+      out.push_back(std::move(finer));
+    else
+      out.back() = std::move(finer);
   }
+  return out;
+}
+
+/// After the opening bracket: (1 + x | a).
+void read_random(Reader& in, Formula& out) {
+  RandomEffects effects;
+  effects.intercept = true;
+  do {
+    if (in.take_word("0") || in.take_word("1"))
+      effects.intercept = in.last() == "1";
+    else
+      effects.slopes.push_back(in.word());
+  } while (in.error().empty() && in.take('+'));
+  in.need('|');
+  if (!effects.intercept && effects.slopes.empty()) in.fail("(0 | …) holds no random effect");
+  for (auto& columns : read_grouping(in)) {
+    effects.columns = std::move(columns);
+    if (std::ranges::find(out.random, effects) != out.random.end())
+      in.fail(fmt::format("the random term of {} stands there twice", effects.group()));
+    out.random.push_back(effects);
+  }
+  in.need(')');
+}
+
+/// (1|a) alone is what other methods know too.
+void keep_single_intercept(Formula& out) {
+  if (out.random.size() != 1) return;
+  const RandomEffects& only = out.random[0];
+  if (!only.intercept || !only.slopes.empty() || only.columns.size() != 1) return;
+  out.group = only.columns[0];
+  out.random.clear();
+}
+
+void read_term(Reader& in, Formula& out) {
+  if (in.take('(')) return read_random(in, out);
   if (in.take_word("0") || in.take_word("1")) {
     out.intercept = in.last() == "1";
     return;
@@ -268,6 +311,12 @@ std::string Term::name() const {
   return out;
 }
 
+std::string RandomEffects::group() const {
+  std::string out;
+  for (const auto& column : columns) out += (out.empty() ? "" : ":") + column;
+  return out;
+}
+
 bool Term::contains(const Term& other) const {
   return std::ranges::all_of(other.variables, [&](const Variable& wanted) {
     return std::ranges::find(variables, wanted) != variables.end();
@@ -283,6 +332,10 @@ std::vector<std::string> Formula::columns() const {
   for (const auto& term : terms)
     for (const auto& variable : term.variables) add(variable.column);
   add(group);
+  for (const auto& effects : random) {
+    for (const auto& slope : effects.slopes) add(slope);
+    for (const auto& column : effects.columns) add(column);
+  }
   return out;
 }
 
@@ -302,6 +355,7 @@ core::Result<Formula> parse_formula(const std::string& text) {
   } while (in.error().empty() && in.take('+'));
   if (!in.at_end()) in.fail("'+', '*', ':' or the end is expected");
   if (!in.error().empty()) return core::bad_input(in.error());
+  keep_single_intercept(out);
   std::ranges::stable_sort(out.terms, {}, [](const Term& t) { return t.variables.size(); });
   for (const auto& term : out.terms)
     for (const auto& variable : term.variables)

@@ -3,7 +3,9 @@
 ///     response ~ term + term …      response: a column, or successes/trials for counts, where
 ///                                   trials is a column or a number
 ///     term: variable · a:b (interaction) · a*b (a + b + a:b) · 1 · 0 (no intercept) ·
-///           (1|column), a random intercept per group
+///           (1|column), a random intercept per group ·
+///           (1 + x | a), (0 + x | a), (1 | a:b), (1 | a/b) = (1 | a) + (1 | a:b), several of them:
+///           random terms as lme4 writes them, of numeric columns x, for 'lmm'
 ///     variable: a column (text columns become factors) · C(column) or factor(column) ·
 ///           I(column^2) … I(column^9) · log(column) · `a name with blanks`
 #pragma once
@@ -37,13 +39,24 @@ struct Term {
   bool operator==(const Term& other) const { return contains(other) && other.contains(*this); }
 };
 
+/// (1 + trial | surgeon): what varies between the levels of one or more columns together.
+struct RandomEffects {
+  bool intercept = true;
+  std::vector<std::string> slopes;   ///< numeric columns
+  std::vector<std::string> columns;  ///< whose combinations are the levels
+
+  std::string group() const;  ///< "surgeon", "surgeon:day"
+  bool operator==(const RandomEffects&) const = default;
+};
+
 struct Formula {
   std::string response;
   std::string trials;        ///< a column, or empty
   double trials_number = 1;  ///< where `trials` is empty
   std::vector<Term> terms;   ///< main effects before their interactions
   bool intercept = true;
-  std::string group;  ///< of (1|group), or empty
+  std::string group;  ///< of (1|group) where that is the one random term, else empty
+  std::vector<RandomEffects> random;  ///< where it is not: all random terms, for 'lmm' alone
 
   /// Every column it names, each once.
   std::vector<std::string> columns() const;

@@ -73,6 +73,36 @@ TEST(Formula, NamesThePlaceOfWhatItCannotRead) {
   EXPECT_EQ(model.error().what, "t.csv:3: column 'x' is 0 and has no logarithm");
 }
 
+TEST(Formula, ReadsRandomTermsAsLme4WritesThem) {
+  const auto read = [](const std::string& text) {
+    const auto parsed = parse_formula(text);
+    EXPECT_TRUE(parsed) << parsed.error().what;
+    return parsed ? *parsed : Formula{};
+  };
+  const auto one = read("y ~ x + (1|a)");
+  EXPECT_EQ(one.group, "a");
+  EXPECT_TRUE(one.random.empty());
+  const auto crossed = read("y ~ x + (1 + x | a) + (1 | b)");
+  EXPECT_EQ(crossed.group, "");
+  EXPECT_EQ(crossed.random, (std::vector<RandomEffects>{{true, {"x"}, {"a"}}, {true, {}, {"b"}}}));
+  EXPECT_EQ(crossed.columns(), (Names{"y", "x", "a", "b"}));
+  // a/b stands for a and a:b (Bates et al. 2015, table 2); a slope brings its intercept unless 0.
+  EXPECT_EQ(read("y ~ x + (x | a/b)").random,
+            (std::vector<RandomEffects>{{true, {"x"}, {"a"}}, {true, {"x"}, {"a", "b"}}}));
+  EXPECT_EQ(read("y ~ x + (0 + x | a)").random,
+            (std::vector<RandomEffects>{{false, {"x"}, {"a"}}}));
+  EXPECT_EQ(read("y ~ x + (1 | a:b)").random[0].group(), "a:b");
+  for (const auto& [text, why] :
+       {std::pair("y ~ x + (0 | a)", "holds no random effect"),
+        std::pair("y ~ x + (1 | a) + (1 | a)", "the random term of a stands there twice"),
+        std::pair("y ~ x + (1 | a:a)", "'a' stands there twice"),
+        std::pair("y ~ x + (1 + x a)", "'|' is expected")}) {
+    const auto parsed = parse_formula(text);
+    ASSERT_FALSE(parsed) << text;
+    EXPECT_NE(parsed.error().what.find(why), std::string::npos) << parsed.error().what;
+  }
+}
+
 std::vector<bool> rows(const std::string& condition, const std::string& text) {
   const auto filter = Filter::parse(condition);
   EXPECT_TRUE(filter) << filter.error().what;

@@ -68,6 +68,11 @@ core::Result<std::map<std::string, std::string>> complete(
 core::Result<Findings> run(const Method& method, const Table& table, const std::string& formula,
                            const std::map<std::string, std::string>& options, Missing missing) {
   const auto parsed = TRY(parse_formula(formula));
+  if (!parsed.random.empty() && !method.random_terms)
+    return core::bad_input(
+        fmt::format("'{}' knows no random terms but one (1|column): 'lmm' takes slopes, crossed "
+                    "and nested ones",
+                    method.id));
   const auto completed = TRY(complete(method, options));
   const auto selected = TRY(table.selected(parsed.columns(), missing));
   return method.run({parsed, selected, formula, completed});

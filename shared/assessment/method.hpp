@@ -54,6 +54,7 @@ struct Method {
   std::string cites;    ///< for a methods paragraph: what it is and after whom
   std::vector<Option> options;
   core::Result<Findings> (*run)(const Analysis& of);
+  bool random_terms = false;  ///< takes formulas with any random terms, not (1|group) alone
 };
 
 namespace methods {

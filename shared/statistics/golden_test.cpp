@@ -48,6 +48,10 @@ Vector vector_of(const core::Json& numbers) {
   return out;
 }
 
+core::Json as_list(const core::Json& numbers) {
+  return numbers.is_array() ? numbers : core::Json::array({numbers});
+}
+
 Matrix matrix_of(const core::Json& rows) {
   Matrix out(static_cast<Eigen::Index>(rows.size()), static_cast<Eigen::Index>(rows[0].size()));
   for (std::size_t i = 0; i < rows.size(); ++i)

@@ -12,6 +12,8 @@ namespace tractus::statistics::golden {
 core::Json expected(const std::string& name);
 Vector vector_of(const core::Json& numbers);
 Matrix matrix_of(const core::Json& rows);
+/// R writes a vector of one number as a number: a list in either case.
+core::Json as_list(const core::Json& numbers);
 
 /// A CSV of the reference: texts by column name.
 class Csv {

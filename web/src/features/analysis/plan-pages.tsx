@@ -217,9 +217,6 @@ export function PlanPage({ id }: { readonly id: string }) {
       </div>
     );
   const plan = query.data;
-  const planned = Array.isArray(plan.plan.analyses)
-    ? (plan.plan.analyses as { id: string; question?: string; method: string; formula?: string; family?: string }[])
-    : [];
   return (
     <div className={styles.page}>
       {back}
@@ -250,7 +247,7 @@ export function PlanPage({ id }: { readonly id: string }) {
       >
         <Table
           caption="Planned analyses"
-          rows={planned}
+          rows={plan.plan.analyses}
           keyOf={(one) => one.id}
           empty="No analyses."
           columns={[

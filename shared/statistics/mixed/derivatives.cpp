@@ -1,0 +1,118 @@
+#include "statistics/mixed/derivatives.hpp"
+
+#include <Eigen/Cholesky>
+#include <cmath>
+
+namespace tractus {
+namespace statistics {
+namespace {
+
+/// f at x + Σ aᵢ eᵢ for up to two coordinates.
+double shifted(const ScalarField& f, Vector x, Eigen::Index i, double a, Eigen::Index j = 0,
+               double b = 0.0) {
+  x[i] += a;
+  x[j] += b;
+  return f(x);
+}
+
+double mixed_difference(const ScalarField& f, const Vector& x, Eigen::Index i, Eigen::Index j,
+                        double h) {
+  return (shifted(f, x, i, h, j, h) - shifted(f, x, i, h, j, -h) - shifted(f, x, i, -h, j, h) +
+          shifted(f, x, i, -h, j, -h)) /
+         (4.0 * h * h);
+}
+
+/// The least that a value must fall by: what rounding leaves of it.
+double noise(double value) { return 1e-14 * (1.0 + std::abs(value)); }
+
+/// Halves the step until the value falls as the slope promises (Armijo). Nothing falls: false.
+bool search_line(const ScalarField& f, const Vector& direction, double slope, Minimum& at) {
+  for (double length = 1.0; length > 1e-10; length *= 0.5) {
+    const Vector next = at.x + length * direction;
+    const double value = f(next);
+    if (!(value <= at.value + 1e-4 * length * slope - noise(at.value))) continue;
+    at.x = next;
+    at.value = value;
+    return true;
+  }
+  return false;
+}
+
+void quasi_newton(const ScalarField& f, double step, int most_steps, Minimum& at) {
+  const auto n = at.x.size();
+  Matrix inverse = Matrix::Identity(n, n);
+  Vector gradient = numeric_gradient(f, at.x, step);
+  bool fresh = true;
+  for (int k = 0; k < most_steps; ++k) {
+    Vector direction = -inverse * gradient;
+    const Vector before = at.x;
+    if (!search_line(f, direction, gradient.dot(direction), at)) {
+      if (fresh) return;
+      inverse.setIdentity();
+      fresh = true;
+      continue;
+    }
+    const Vector s = at.x - before, next = numeric_gradient(f, at.x, step), y = next - gradient;
+    gradient = next;
+    const double sy = s.dot(y);
+    if (!(sy > 1e-12 * s.norm() * y.norm())) continue;
+    if (fresh) inverse *= sy / y.squaredNorm();  // [Nocedal2006, (6.20)]
+    fresh = false;
+    const Matrix left = Matrix::Identity(n, n) - s * y.transpose() / sy;
+    inverse = left * inverse * left.transpose() + s * s.transpose() / sy;
+  }
+}
+
+/// True where the last step was small: the minimum is reached.
+bool newton(const ScalarField& f, double step, Minimum& at) {
+  for (int k = 0; k < 6; ++k) {
+    const Vector gradient = numeric_gradient(f, at.x, step);
+    const Eigen::LDLT<Matrix> hessian(numeric_hessian(f, at.x, 4.0 * step));
+    if (hessian.info() != Eigen::Success || !hessian.isPositive()) return false;
+    const Vector move = -hessian.solve(gradient);
+    if (!move.allFinite()) return false;
+    const double value = f(at.x + move);
+    if (!(value <= at.value + 10.0 * noise(at.value))) return move.norm() < 1e-5;
+    at.x += move;
+    at.value = value;
+    if (move.norm() < 1e-9 * (1.0 + at.x.norm())) return true;
+  }
+  return true;
+}
+
+}  // namespace
+
+Vector numeric_gradient(const ScalarField& f, const Vector& x, double step) {
+  Vector out(x.size());
+  for (Eigen::Index i = 0; i < x.size(); ++i)
+    out[i] = (shifted(f, x, i, -2 * step) - 8 * shifted(f, x, i, -step) +
+              8 * shifted(f, x, i, step) - shifted(f, x, i, 2 * step)) /
+             (12 * step);
+  return out;
+}
+
+Matrix numeric_hessian(const ScalarField& f, const Vector& x, double step) {
+  const auto n = x.size();
+  const double centre = f(x);
+  Matrix out(n, n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    out(i, i) = (-shifted(f, x, i, -2 * step) + 16 * shifted(f, x, i, -step) - 30 * centre +
+                 16 * shifted(f, x, i, step) - shifted(f, x, i, 2 * step)) /
+                (12 * step * step);
+    for (Eigen::Index j = 0; j < i; ++j)
+      out(i, j) = out(j, i) =
+          (4 * mixed_difference(f, x, i, j, step) - mixed_difference(f, x, i, j, 2 * step)) / 3;
+  }
+  return out;
+}
+
+Minimum minimise(const ScalarField& f, const Vector& start, double step, int most_steps) {
+  Minimum at{start, f(start), false};
+  if (start.size() == 0) return at.converged = true, at;
+  quasi_newton(f, step, most_steps, at);
+  at.converged = newton(f, step, at);
+  return at;
+}
+
+}  // namespace statistics
+}  // namespace tractus

@@ -1,0 +1,196 @@
+/// Mixed models with any random terms, against lme4 and lmerTest
+/// (tests/golden/statistics-reference/lmm_random_terms.R).
+#include "statistics/mixed/mixed_model.hpp"
+
+#include <cmath>
+#include <map>
+#include <set>
+
+#include "statistics/golden_test.hpp"
+#include "statistics/mixed/lmm.hpp"
+
+namespace tractus {
+namespace statistics {
+namespace {
+
+using golden::expect_near;
+
+/// (1 + slope | columns); no slope where it is empty.
+struct Term {
+  std::vector<std::string> columns;
+  std::string slope = {};
+  bool intercept = true;
+};
+
+const std::map<std::string, std::vector<Term>> kTerms = {
+    {"sim_crossed_1", {{{"surgeon"}}, {{"scenario"}}}},
+    {"sim_crossed_2", {{{"surgeon"}, "trial"}, {{"scenario"}}}},
+    {"sim_crossed_3", {{{"surgeon"}, "trial"}, {{"scenario"}}}},
+    {"sim_crossed_4", {{{"surgeon"}, "trial", false}, {{"surgeon"}}}},
+    {"sim_crossed_5", {{{"surgeon"}}, {{"scenario"}}}},
+    {"sim_crossed_6", {{{"surgeon"}, "trial"}, {{"scenario"}, "trial"}}},
+    {"penicillin", {{{"plate"}}, {{"sample"}}}},
+    {"pastes", {{{"batch"}}, {{"batch", "cask"}}}}};
+
+RandomTerm random_term(const golden::Csv& csv, const Term& term) {
+  RandomTerm out;
+  for (const auto& column : term.columns) {
+    const auto cells = csv.texts(column);
+    out.labels.resize(cells.size());
+    for (std::size_t i = 0; i < cells.size(); ++i)
+      out.labels[i] += (out.group.empty() ? "" : ":") + cells[i];
+    out.group += (out.group.empty() ? "" : ":") + column;
+  }
+  const auto n = Eigen::Index(out.labels.size());
+  std::vector<Vector> columns;
+  if (term.intercept) columns.push_back(Vector::Ones(n));
+  if (!term.slope.empty()) columns.push_back(csv.numbers(term.slope));
+  out.columns.resize(n, std::ssize(columns));
+  for (std::size_t c = 0; c < columns.size(); ++c) {
+    out.columns.col(Eigen::Index(c)) = columns[c];
+    out.names.push_back(std::to_string(c));
+  }
+  return out;
+}
+
+/// trial, and the scenario's levels against the first, as the formula says.
+Design design_of(const golden::Csv& csv, const std::string& formula, Eigen::Index rows) {
+  std::vector<Vector> columns;
+  if (formula.find("~ trial") != std::string::npos) columns.push_back(csv.numbers("trial"));
+  if (formula.find("+ scenario") != std::string::npos) {
+    const auto cells = csv.texts("scenario");
+    const std::set<std::string> levels(cells.begin(), cells.end());
+    for (auto level = std::next(levels.begin()); level != levels.end(); ++level) {
+      columns.push_back(Vector::Zero(rows));
+      for (std::size_t i = 0; i < cells.size(); ++i)
+        if (cells[i] == *level) columns.back()[Eigen::Index(i)] = 1.0;
+    }
+  }
+  Matrix all(rows, std::ssize(columns));
+  std::vector<std::string> names;
+  for (std::size_t c = 0; c < columns.size(); ++c) {
+    all.col(Eigen::Index(c)) = columns[c];
+    names.push_back("x" + std::to_string(c));
+  }
+  return with_intercept(all, names);
+}
+
+void expect_random(const RandomPart& part, const core::Json& want, const std::string& what) {
+  const double largest = golden::matrix_of(want).cwiseAbs().maxCoeff();
+  for (Eigen::Index r = 0; r < part.covariance.rows(); ++r)
+    for (Eigen::Index c = 0; c < part.covariance.cols(); ++c)
+      EXPECT_NEAR(part.covariance(r, c), want[std::size_t(r)][std::size_t(c)].get<double>(),
+                  1e-6 * largest + 1e-9)
+          << what << " " << part.group;
+}
+
+/// A random term's key in lme4's answer: "surgeon", and "surgeon.1" for the second of that group.
+std::string key_of(const MixedModel& fit, std::size_t term) {
+  int before = 0;
+  for (std::size_t t = 0; t < term; ++t) before += fit.random[t].group == fit.random[term].group;
+  return fit.random[term].group + (before ? "." + std::to_string(before) : "");
+}
+
+TEST(MixedModelTest, AgreesWithLme4ToSixDigits) {
+  const auto reference = golden::expected("lmm_random_terms");
+  int compared = 0;
+  for (const auto& [name, want] : reference["fits"].items()) {
+    const golden::Csv csv(want["data"]);
+    const Vector y = csv.numbers(want["response"]);
+    std::vector<RandomTerm> terms;
+    for (const Term& term : kTerms.at(name)) terms.push_back(random_term(csv, term));
+    const Design design = design_of(csv, want["formula"], y.size());
+    const auto fit = mixed_model(design, y, terms);
+    ASSERT_TRUE(fit) << name << ": " << fit.error().what;
+    ++compared;
+    EXPECT_TRUE(fit->converged) << name;
+    EXPECT_EQ(fit->singular, want["singular"].get<bool>()) << name;
+    expect_near(fit->criterion, want["reml_criterion"], 1e-9, name + " criterion");
+    expect_near(fit->coefficients, golden::as_list(want["fixef"]), 1e-6, name + " fixef");
+    expect_near(fit->standard_errors, golden::as_list(want["se"]), 1e-6, name + " se");
+    expect_near(fit->sigma_squared, want["sigma_squared"], 1e-6, name + " sigma");
+    // lmerTest differentiates numerically too, from where its own search ended.
+    if (!fit->singular) expect_near(fit->df, golden::as_list(want["df"]), 1e-4, name + " df");
+    for (std::size_t t = 0; t < terms.size(); ++t)
+      expect_random(fit->random[t], want["covariances"][key_of(*fit, t)], name);
+    const auto ml = mixed_model(design, y, terms, Likelihood::ml);
+    ASSERT_TRUE(ml) << name << ": " << ml.error().what;
+    expect_near(ml->criterion, want["ml"]["deviance"], 1e-9, name + " deviance");
+    expect_near(ml->coefficients, golden::as_list(want["ml"]["fixef"]), 1e-6, name + " ML fixef");
+    expect_near(ml->sigma_squared, want["ml"]["sigma_squared"], 1e-6, name + " ML sigma");
+  }
+  EXPECT_EQ(compared, 8);
+}
+
+TEST(MixedModelTest, PredictsTheEffectsOfLevelsAsLme4Does) {
+  const auto reference = golden::expected("lmm_random_terms");
+  for (const char* name : {"sim_crossed_2", "penicillin"}) {
+    const auto& want = reference["fits"][name];
+    const golden::Csv csv(want["data"]);
+    const Vector y = csv.numbers(want["response"]);
+    std::vector<RandomTerm> terms;
+    for (const Term& term : kTerms.at(name)) terms.push_back(random_term(csv, term));
+    const auto fit = mixed_model(design_of(csv, want["formula"], y.size()), y, terms);
+    ASSERT_TRUE(fit) << fit.error().what;
+    for (const auto& part : fit->random) {
+      const std::string level = want["first_levels"][part.group];
+      const auto at = std::ranges::find(part.levels, level) - part.levels.begin();
+      expect_near(Vector(part.effects.row(at)), golden::as_list(want["first_effects"][part.group]),
+                  1e-5, std::string(name) + " " + part.group);
+    }
+  }
+}
+
+TEST(MixedModelTest, OneRandomInterceptIsTheClosedFormOfLmm) {
+  const golden::Csv simulated("data/sim_crossed_1.csv");
+  const Vector y = simulated.numbers("y");
+  const Design design = with_intercept(simulated.numbers("trial"), {"trial"});
+  const auto labels = simulated.texts("surgeon");
+  const auto closed = lmm(design, y, labels);
+  const auto fit =
+      mixed_model(design, y, {{"surgeon", labels, Matrix::Ones(y.size(), 1), {"(Intercept)"}}});
+  ASSERT_TRUE(closed && fit);
+  EXPECT_NEAR(fit->criterion, closed->criterion, 1e-9 * closed->criterion);
+  EXPECT_NEAR(fit->random[0].covariance(0, 0), closed->tau_squared, 1e-7 * closed->tau_squared);
+  for (int j = 0; j < 2; ++j) {
+    EXPECT_NEAR(fit->coefficients[j], closed->coefficients[j], 1e-9);
+    EXPECT_NEAR(fit->df[j], closed->df[j], 1e-5 * closed->df[j]);
+  }
+  const auto joint = joint_test(*fit, {1});
+  EXPECT_NEAR(joint.statistic, fit->t[1] * fit->t[1], 1e-9 * joint.statistic);
+  EXPECT_NEAR(joint.p, fit->p[1], 1e-12);
+}
+
+TEST(MixedModelTest, SaysWhatCannotBeEstimated) {
+  Vector y(6), x(6);
+  y << 1, 2, 4, 3, 5, 7;
+  x << 1, 2, 3, 4, 5, 6;
+  const Design design = with_intercept(x, {"x"});
+  const Matrix ones = Matrix::Ones(6, 1);
+  const auto refusal = [&](const RandomTerm& term) {
+    const auto fit = mixed_model(design, y, {term});
+    return fit ? "" : fit.error().what;
+  };
+  EXPECT_EQ(refusal({"a", {"p", "p", "p", "p", "p", "p"}, ones, {"1"}}),
+            "a: one level: the spread between its levels cannot be estimated");
+  EXPECT_NE(refusal({"a", {"p", "q", "r", "s", "t", "u"}, ones, {"1"}}).find("as many effects"),
+            std::string::npos);
+  EXPECT_NE(refusal({"a", {"p", "q", "p", "q", "p", "q"}, Matrix::Zero(6, 1), {"x"}})
+                .find("the slope's column x is 0"),
+            std::string::npos);
+}
+
+TEST(MixedModelTest, IsStoppedWhenAsked) {
+  const golden::Csv csv("data/sim_crossed_1.csv");
+  const Vector y = csv.numbers("y");
+  const auto fit =
+      mixed_model(with_intercept(csv.numbers("trial"), {"trial"}), y,
+                  {{"surgeon", csv.texts("surgeon"), Matrix::Ones(y.size(), 1), {"(Intercept)"}}},
+                  Likelihood::reml, [](double) { return false; });
+  ASSERT_FALSE(fit);
+  EXPECT_EQ(fit.error().code, core::Errc::cancelled);
+}
+
+}  // namespace
+}  // namespace statistics
+}  // namespace tractus
