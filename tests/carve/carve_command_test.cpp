@@ -133,6 +133,43 @@ TEST_F(Carve, FillsMarrowAndSaysWhatCanBeFelt) {
     EXPECT_EQ(part.secret, part.name != cases::kVolumePart) << part.name;
 }
 
+TEST_F(Carve, TakesALineThatWasDrawnInSlicer) {
+  const std::string drawn =
+      R"({"markups": [{"type": "Line", "coordinateSystem": "RAS", "controlPoints": [)"
+      R"({"position": [-22, -19, 0]}, {"position": [-22, 20, 0]}]}]})";
+  ASSERT_TRUE(core::write_file(work() / "line.mrk.json", core::bytes_of(drawn)));
+  const auto ran = carve("--plan line.mrk.json");
+  ASSERT_EQ(ran.exit, 0) << ran.err;
+  const auto opened = cases::open_case(work() / "case");
+  ASSERT_TRUE(opened) << opened.error().what;
+  EXPECT_LT((opened->definition.tract.end_m() - Vec3(0.022, -0.02, 0)).norm(), 1e-9);
+  fs::remove_all(work() / "case");
+  EXPECT_EQ(carve("--plan line.mrk.json " + std::string(kLeft)).exit, 2);
+  const auto neither = carve("");
+  EXPECT_EQ(neither.exit, 2);
+  EXPECT_THAT(neither.err, HasSubstr("give --entry and --target, or --plan FILE.mrk.json"));
+}
+
+TEST_F(Carve, WritesACaseForSlicerWhoseLineMakesTheSameTract) {
+  ASSERT_EQ(carve(kLeft).exit, 0);
+  const auto ran = tractus("slicer --case case --out seen --json");
+  ASSERT_EQ(ran.exit, 0) << ran.err;
+  const auto report = core::parse_json(ran.out, "out");
+  ASSERT_TRUE(report) << ran.out;
+  EXPECT_EQ((*report)["surface_value"], 425.0);  // half way from 150 to 700 HU
+  for (const char* file : {"volume.nrrd", "bone.stl", "channel.stl", "plan.mrk.json"})
+    EXPECT_GT(fs::file_size(work() / "seen" / file), 200u) << file;
+  fs::rename(work() / "case", work() / "first");
+  ASSERT_EQ(carve("--plan seen/plan.mrk.json").exit, 0);
+  const auto first = cases::open_case(work() / "first"), again = cases::open_case(work() / "case");
+  ASSERT_TRUE(first && again);
+  EXPECT_LT((again->definition.tract.end_m() - first->definition.tract.end_m()).norm(), 1e-9);
+  EXPECT_THAT(tractus("slicer --case case --out seen").err, HasSubstr("seen: exists already"));
+  EXPECT_THAT(tractus("slicer --case case --surface 5000 --out high").err,
+              HasSubstr("--surface: no surface lies at the CT value 5000"));
+  EXPECT_FALSE(fs::exists(work() / "high"));
+}
+
 TEST_F(Carve, TriesACaseThatWasMadeWithoutACertificate) {
   ASSERT_EQ(carve("--no-channel " + std::string(kLeft)).exit, 0);
   const auto ran = tractus("case certify case");
@@ -165,7 +202,7 @@ TEST_F(Carve, RefusesWithOneLineAndLeavesNothingBehind) {
       {"--entry 22,nan,0 --target 22,-20,0", "--entry"},
       {"--entry 1e400,0,0 --target 22,-20,0", "--entry"},
       {"--entry 22,19,0 --target 22,19,0", "a length of 0 mm"},
-      {"--entry 22,19,0", "--target is required"},
+      {"--entry 22,19,0", "give --entry and --target, or --plan FILE.mrk.json"},
       {"--entry 90,19,0 --target 22,-20,0",
        "ct.tvol: the entry (90.0, 19.0, 0.0) mm lies outside the volume"},
       {left + "--length 100", "the tract's end"},

@@ -10,6 +10,7 @@
 #include "app/command.hpp"
 #include "app/lengths.hpp"
 #include "cases/making.hpp"
+#include "cases/markups.hpp"
 #include "core/clock.hpp"
 #include "core/file.hpp"
 #include "core/try.hpp"
@@ -27,7 +28,7 @@ constexpr const char* kEvery = "every";  // of --breach
 
 struct CarveOptions {
   std::string volume, out, title, source, model, key, png;
-  std::string entry, target, length, radius = "1.5", midline;
+  std::string entry, target, drawn, length, radius = "1.5", midline;
   std::string breach, breach_depth, breach_at, spacing = "0.35", margin = "20";
   std::string preparation = "published", envelope, observer, may_move;
   int envelope_label = 1;
@@ -86,10 +87,21 @@ core::Result<void> read_preparation(const CarveOptions& o, cases::CarvingPlan& p
   return {};
 }
 
+/// From the two points, or from a line that was drawn in 3D Slicer.
+core::Result<cases::PlannedLine> read_line(const CarveOptions& o) {
+  if (!o.drawn.empty()) return cases::read_line_markup(o.drawn);
+  if (o.entry.empty() || o.target.empty())
+    return Error{Errc::bad_input, "give --entry and --target, or --plan FILE.mrk.json"};
+  const auto entry_m = TRY(point_m(o.entry, "--entry"));
+  const auto target_m = TRY(point_m(o.target, "--target"));
+  return cases::PlannedLine{entry_m, target_m};
+}
+
 core::Result<cases::CarvingPlan> plan_of(const CarveOptions& o) {
   cases::CarvingPlan plan;
-  plan.entry_m = TRY(point_m(o.entry, "--entry"));
-  plan.target_m = TRY(point_m(o.target, "--target"));
+  const auto line = TRY(read_line(o));
+  plan.entry_m = line.entry_m;
+  plan.target_m = line.target_m;
   TRY(read_length(o.length, "--length", plan.length_m));
   TRY(read_length(o.radius, "--radius", plan.radius_m));
   TRY(read_length(o.midline, "--midline-x", plan.midline_x_m));
@@ -328,14 +340,18 @@ void add_options(CLI::App& app, CarveOptions& o) {
   app.add_option("--volume", o.volume,
                  "CT volume: a NIfTI, NRRD or .tvol file, or a folder of DICOM slices")
       ->required();
-  app.add_option(
-         "--entry", o.entry,
-         "centre of the tract's entry as x,y,z in patient coordinates LPS (x to the left, y to "
-         "posterior, z to superior), in mm; a unit may follow: 45,199,-61mm or 0.045,0.199,-0.061m")
-      ->required();
-  app.add_option("--target", o.target,
-                 "a point on the tract's axis beyond the entry, in the same form as --entry")
-      ->required();
+  auto* entry = app.add_option(
+      "--entry", o.entry,
+      "centre of the tract's entry as x,y,z in patient coordinates LPS (x to the left, y to "
+      "posterior, z to superior), in mm; a unit may follow: 45,199,-61mm or 0.045,0.199,-0.061m");
+  auto* target =
+      app.add_option("--target", o.target,
+                     "a point on the tract's axis beyond the entry, in the same form as --entry");
+  app.add_option("--plan", o.drawn,
+                 "line from entry to target, drawn in 3D Slicer (.mrk.json), in place of --entry "
+                 "and --target")
+      ->excludes(entry)
+      ->excludes(target);
   app.add_option("--length", o.length,
                  "length of the tract, in mm (default: distance from entry to target)");
   app.add_option("--radius", o.radius, "radius of the drill, in mm (default 1.5)");
