@@ -149,6 +149,10 @@ void add_run(CLI::App& app, Options& options) {
       ->default_str("none");
   app.add_option("--picture", options.picture,
                  "PNG of the (last) trial: bone cut open, what was drilled, tool, the tip's way");
+  app.add_option(
+      "--igtl-out", options.igtl_out,
+      "[ADDRESS:]PORT at which 3D Slicer and others may listen to the tip's pose and the "
+      "forces by OpenIGTLink, 60 times a second (default: none; address 127.0.0.1)");
   app.add_flag("--follow", options.follow,
                "a JSON line on standard error whenever samples have reached the disk");
 }
@@ -276,8 +280,8 @@ std::optional<int> check_run(const CLI::App& app, Options& options) {
     return refuse("--scenario is required (or --model alone, without walls)");
   if (options.burr || !options.drilled.empty())
     return refuse(fmt::format("--tool, --drilled: are of a case, with {}", handles));
-  if (options.show != Show::none || !options.picture.empty())
-    return refuse("--view, --picture: the rig has none; its person feels alone");
+  if (options.show != Show::none || !options.picture.empty() || !options.igtl_out.empty())
+    return refuse("--view, --picture, --igtl-out: the rig has none; its person feels alone");
   rig.seed = options.setup.seed;
   rig.speed = options.setup.speed;
   if (app.count("--duration") > 0) rig.duration_s = options.setup.duration_s;

@@ -43,6 +43,7 @@ struct Options {
   int trials = 1;
   Show show = Show::none;
   std::filesystem::path picture;  ///< empty: none
+  std::string igtl_out;           ///< where OpenIGTLink sends; empty: nowhere
   // study
   std::string study, participant;
   bool skill_given = false;  ///< else the simulated surgeon's skill follows from their experience
@@ -88,7 +89,8 @@ inline ViewOptions look_of(const Options& options) {
   return {.show = options.show,
           .picture = options.picture,
           .data = options.data,
-          .device = options.setup.device};
+          .device = options.setup.device,
+          .igtl_out = options.igtl_out};
 }
 
 /// Of the n-th trial of this call; nothing when no date was given.

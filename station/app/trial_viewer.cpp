@@ -1,5 +1,6 @@
 #include "station/app/trial_viewer.hpp"
 
+#include <charconv>
 #include <cstdio>
 
 #include "core/try.hpp"
@@ -24,8 +25,17 @@ headset::Moment moment_of(const session::PreparedCase& prepared, const loop::Liv
   now.state.deflection_m = {live.deflection_m[0], live.deflection_m[1]};
   now.state.wrench_H.force_N = {live.rendered_force_N[0], live.rendered_force_N[1],
                                 live.rendered_force_N[2]};
+  now.state.wrench_H.torque_Nm = {live.rendered_torque_Nm[0], live.rendered_torque_Nm[1],
+                                  live.rendered_torque_Nm[2]};
   now.tip_m = prepared.runtime.law().tip_m(now.state.X_VH, now.state.deflection_m);
   return now;
+}
+
+sensors::ToolMoment tool_of(const headset::Moment& now) {
+  const math::Quat& q_VH = now.state.X_VH.q;
+  return {.X_VT = {now.tip_m, q_VH},
+          .force_N = q_VH * now.state.wrench_H.force_N,
+          .torque_Nm = q_VH * now.state.wrench_H.torque_Nm};
 }
 
 /// The same of a recorded sample.
@@ -55,7 +65,31 @@ core::Result<TrialViewer> TrialViewer::make(const session::PreparedCase& prepare
   made.picture_ = look.picture;
   made.burr_ = look.burr;
   TRY(made.open(look));
+  if (!look.igtl_out.empty()) TRY(made.open_sender(look.igtl_out));
   return made;
+}
+
+core::Result<void> TrialViewer::open_sender(const std::string& igtl_out) {
+  const auto colon = igtl_out.rfind(':');
+  const bool stated = colon != std::string::npos;
+  const std::string address = stated ? igtl_out.substr(0, colon) : "127.0.0.1";
+  const std::string text = stated ? igtl_out.substr(colon + 1) : igtl_out;
+  std::uint16_t port = 0;
+  const auto [end, failure] = std::from_chars(text.data(), text.data() + text.size(), port);
+  if (failure != std::errc() || end != text.data() + text.size())
+    return core::Error{core::Errc::bad_input,
+                       "--igtl-out: '" + igtl_out + "': ADDRESS:PORT or PORT is expected"};
+  auto started = TRY(sensors::IgtlSender::start(
+      address, port,
+      [&prepared = *prepared_, followed = live_]() -> std::optional<sensors::ToolMoment> {
+        const loop::LiveState* live = followed->load();
+        const auto seen = live ? live->read() : std::nullopt;
+        if (!seen) return std::nullopt;
+        return tool_of(moment_of(prepared, *seen));
+      }));
+  sender_ = std::move(started);
+  std::fprintf(stderr, "OpenIGTLink: sends at %s:%d\n", address.c_str(), sender_->port());
+  return {};
 }
 
 view::Scene TrialViewer::scene() const {

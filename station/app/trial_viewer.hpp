@@ -6,8 +6,10 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <string>
 
 #include "station/headset/headset_thread.hpp"
+#include "station/sensors/igtl_sender.hpp"
 #include "station/session/palpation_rig.hpp"
 #include "station/view/view.hpp"
 
@@ -23,17 +25,21 @@ struct ViewOptions {
   std::filesystem::path data;     ///< the station's folder, which may hold an alignment of the room
   std::string device;             ///< that an alignment must be of
   std::optional<drilling::Burr> burr = {};  ///< the tool; none: a probe
+  /// Where other programs may listen to the tool's pose and forces by OpenIGTLink:
+  /// "ADDRESS:PORT" or "PORT" (on 127.0.0.1); empty: nowhere.
+  std::string igtl_out = {};
 };
 
 class TrialViewer {
  public:
   /// Before the trial is made, so that nothing is left of it when there is nothing to look with.
   /// With a headset this returns when somebody sees the scene, or after a while. `prepared`
-  /// outlives this. Errors: unavailable (no display, no OpenGL, no headset), bad_input
-  /// (alignment.json).
+  /// outlives this. Errors: unavailable (no display, no OpenGL, no headset, a port in use),
+  /// bad_input (alignment.json).
   static core::Result<TrialViewer> make(const session::PreparedCase& prepared,
                                         const ViewOptions& look);
-  /// Whose state the headset shows, as often as it likes, until `end_headset`.
+  /// Whose state the headset shows, until `end_headset`, and OpenIGTLink sends. `live` outlives
+  /// this.
   void follow(const loop::LiveState& live) { live_->store(&live); }
 
   /// Looks at the latest state, draws it when there is a view. False when a person closed the
@@ -52,6 +58,7 @@ class TrialViewer {
   core::Result<void> open(const ViewOptions& look);
   core::Result<void> open(view::Mode mode);
   core::Result<void> open_headset(const ViewOptions& look);
+  core::Result<void> open_sender(const std::string& igtl_out);
   void tell_headset();
   void look_at_bone(loop::Drilling& drilling);
 
@@ -62,6 +69,7 @@ class TrialViewer {
   using Followed = std::atomic<const loop::LiveState*>;
   std::shared_ptr<Followed> live_ = std::make_shared<Followed>(nullptr);  ///< the headset's too
   std::unique_ptr<headset::HeadsetThread> headset_;
+  std::unique_ptr<sensors::IgtlSender> sender_;
   headset::DisplayState told_ = headset::DisplayState::shown;  ///< the last that was said of it
   // Of the trial that is looked at.
   const session::TipWay* way_ = nullptr;
