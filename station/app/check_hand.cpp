@@ -67,7 +67,7 @@ core::Result<void> run_check(const char* label, Checked& checked, Opened& opened
 }
 
 core::Result<void> tell(const Checked& checked, const Opened& opened, const char* what) {
-  return opened.simulated() ? core::Result<void>() : ask_person(checked.options, what);
+  return opened.simulated() ? core::Result<void>() : checked.ask(what);
 }
 
 core::Result<void> travel(Checked& checked) {
@@ -104,9 +104,8 @@ core::Result<void> self_test_hand(Checked& checked) {
 core::Result<void> calibrate_hand(Checked& checked) {
   auto info = TRY(devices::find(checked.options.setup.device, devices::DeviceKind::handle));
   if (!info.simulated)
-    TRY(ask_person(checked.options,
-                   "The handle will move by itself to find its zero: clear its way and "
-                   "keep hands off."));
+    TRY(checked.ask(
+        "The handle will move by itself to find its zero: clear its way and keep hands off."));
   auto opened = TRY(open_device(checked, kLongPlan_s, devices::Homing::move));
   checked.device = opened->limits.name;
   checked.simulated = opened->simulated();

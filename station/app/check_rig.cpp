@@ -86,21 +86,21 @@ core::Result<void> move(Checked& checked, OpenedRig& rig,
   return check::check_rig_motion(bench_of(checked, rig, progress), {}, checked.findings);
 }
 
-/// With a person at the terminal alone: nobody else can press it.
+/// With a person there alone: nobody else can press it.
 core::Result<void> press_emergency_stop(Checked& checked, OpenedRig& rig) {
-  if (checked.simulated || !::isatty(STDIN_FILENO)) return {};
+  if (checked.simulated || !checked.attended()) return {};
   return run_shown("Emergency stop", Pace::real_time, checked.outside,
                    [&](const std::function<bool(double)>& progress) -> core::Result<void> {
                      auto found = TRY(check::check_emergency_stop(
                          bench_of(checked, rig, progress), kPatience_s,
-                         [](const char* what) { fmt::print(stderr, "\n{}\n", what); }));
+                         [&](const char* what) { checked.tell(what); }));
                      checked.findings.push_back(std::move(found));
                      return {};
                    });
 }
 
 core::Result<void> check_all(Checked& checked, OpenedRig& rig) {
-  if (!checked.simulated) TRY(ask_person(checked.options, kLetGo));
+  if (!checked.simulated) TRY(checked.ask(kLetGo));
   bool may_move = false;
   auto rested = run_shown("At rest", Pace::real_time, checked.outside,
                           [&](const std::function<bool(double)>& progress) -> core::Result<void> {
@@ -113,7 +113,7 @@ core::Result<void> check_all(Checked& checked, OpenedRig& rig) {
   TRY(press_emergency_stop(checked, rig));
   if (!checked.findings.back().passed && checked.findings.back().name.starts_with("emergency"))
     return {};  // a rig whose e-stop does not work is not moved
-  if (!checked.simulated) TRY(ask_person(checked.options, kKeepClear));
+  if (!checked.simulated) TRY(checked.ask(kKeepClear));
   return run_shown(
       "Motion", Pace::real_time, checked.outside,
       [&](const std::function<bool(double)>& progress) { return move(checked, rig, progress); });

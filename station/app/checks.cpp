@@ -36,6 +36,15 @@ core::Result<void> ask_person(const Options& options, const char* what) {
   return {};
 }
 
+bool Checked::attended() const { return attendant || ::isatty(STDIN_FILENO); }
+
+void Checked::tell(const char* what) const {
+  if (attendant)
+    attendant->tell(what);
+  else
+    fmt::print(stderr, "\n{}\n", what);
+}
+
 core::Result<void> run_shown(
     const std::string& label, Pace pace, const session::RemoteSupervisor& outside,
     const std::function<core::Result<void>(const std::function<bool(double)>& progress)>& work,

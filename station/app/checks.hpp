@@ -17,6 +17,17 @@ namespace tractus::app {
 /// Errors: bad_input when there is neither, cancelled.
 core::Result<void> ask_person(const Options& options, const char* what);
 
+/// Who stands by at a screen instead of a terminal.
+class Attendant {
+ public:
+  virtual ~Attendant() = default;
+  /// Shows what will move and what to do, and waits until the person says that it is done. Errors:
+  /// cancelled.
+  virtual core::Result<void> confirm(const char* what) = 0;
+  /// Shows what to do now, and does not wait.
+  virtual void tell(const char* what) = 0;
+};
+
 /// Who may stop a check or lower its force from afar, and what came of it.
 struct Checked {
   const Options& options;
@@ -25,6 +36,15 @@ struct Checked {
   std::vector<check::Finding> findings = {};
   std::string device = {};  ///< as it calls itself
   bool simulated = false;
+  Attendant* attendant = nullptr;  ///< null: the person at the terminal
+
+  /// Errors: those of ask_person.
+  core::Result<void> ask(const char* what) const {
+    return attendant ? attendant->confirm(what) : ask_person(options, what);
+  }
+  /// Somebody is there who can press the e-stop.
+  bool attended() const;
+  void tell(const char* what) const;
 };
 
 enum class Pace { real_time, as_fast_as_it_goes };

@@ -64,18 +64,15 @@ Result<std::vector<trial::ProbingMeasurement>> played_shown(loop::ProgramPlayer&
                                                             const trial::MotionProgram& program,
                                                             int repetitions) {
   const auto shown = core::terminal_progress("Playing");
-  std::atomic<double> share = 0.0;
-  std::atomic<bool> stop = false, done = false;
+  loop::Playing playing;
+  std::atomic<bool> done = false;
   Result<std::vector<trial::ProbingMeasurement>> out = Error{Errc::cancelled, "stopped"};
   std::jthread works([&] {
-    out = player.play(program, repetitions, [&](double now) {
-      share = now;
-      return !stop;
-    });
+    out = player.play(program, repetitions, playing);
     done = true;
   });
   while (!done) {
-    if (asked_to_stop() || (shown && !shown(share))) stop = true;
+    if (asked_to_stop() || (shown && !shown(playing.share))) playing.stop = true;
     std::this_thread::sleep_for(std::chrono::milliseconds(50));
   }
   works.join();

@@ -7,10 +7,11 @@
 
 #include "core/try.hpp"
 #include "station/app/assigned_rounds.hpp"
-#include "station/app/checks.hpp"
 #include "station/app/commands.hpp"
 #include "station/app/exchange.hpp"
 #include "station/app/kiosk_browser.hpp"
+#include "station/app/kiosk_technician.hpp"
+#include "station/app/start_watch.hpp"
 #include "station/app/trial_epilogue.hpp"
 #include "station/devices/catalogue.hpp"
 #include "station/kiosk/page_server.hpp"
@@ -24,7 +25,16 @@ using kiosk::FaultKind;
 using kiosk::Machine;
 using kiosk::Screen;
 
-constexpr Instant_ns kSendAgain_ns = 30'000'000'000;
+constexpr Instant_ns kSendAgain_ns = 30'000'000'000, kAskAgain_ns = 1'000'000'000;
+constexpr int kMostAsked = 60;  // a result that has not come by then is seen on the pages
+
+/// To standard error and to the technician's menu.
+void log_line(Desk& desk, const std::string& line) {
+  std::fprintf(stderr, "warning: %s\n", line.c_str());
+  desk.tell([&](Machine& machine, Instant_ns) {
+    machine.log(fmt::format("{} {}", core::utc_text(core::utc_us()), line));
+  });
+}
 
 std::uint64_t trials_waiting(const session::StationFolder& folder) {
   const auto entries = folder.outbox().entries();
@@ -51,10 +61,20 @@ bool goes_or_leaves(const Machine& machine) {
   return machine.screen() == Screen::preparing || machine.leaves();
 }
 
+/// What every visit to this station shares.
+struct Kiosk {
+  const Options& options;
+  const session::StationFolder& folder;
+  uplink::Server& server;
+  Presence& presence;
+  Desk& desk;
+  const core::Clock& clock;
+};
+
 class AtKiosk final : public Trainee {
  public:
-  AtKiosk(Desk& desk, Presence& presence, const session::StationFolder& folder)
-      : desk_(desk), presence_(presence), folder_(folder) {}
+  AtKiosk(const Kiosk& kiosk, const uplink::Ticket& ticket)
+      : kiosk_(kiosk), desk_(kiosk.desk), presence_(kiosk.presence), ticket_(ticket) {}
 
   bool may_begin() override {
     if (!presence_.outside()->stopped()) return stays();
@@ -63,22 +83,31 @@ class AtKiosk final : public Trainee {
 
   bool starts(const wire::AssignedWork& work) override {
     presence_.is(Presence::State::idle);
-    desk_.tell([&](Machine& machine, Instant_ns now) { machine.offered(work, now); });
+    const auto button = StartWatch::begin(kiosk_.options, [this] {
+      static_cast<void>(desk_.take({.kind = kiosk::Command::Kind::start}));
+    });
+    desk_.tell([&](Machine& machine, Instant_ns now) {
+      machine.has_button(button != nullptr);
+      machine.offered(work, now);
+    });
     return waits_to_go_on();
   }
 
   bool look(const session::TrialSnapshot& seen) override {
     kiosk::Live live{.t_s = std::max(seen.t_s, 0.0)};
     if (!seen.blind) live.depth_m = seen.depth_m, live.progress = seen.progress;
-    desk_.tell([&](Machine& machine, Instant_ns) {
+    desk_.tell([&](Machine& machine, Instant_ns now) {
       if (seen.header.simulated) machine.simulated();
       machine.running(live);
+      machine.tick(now);  // of a pause
+      presence_.outside()->pause(machine.pauses_trial());
     });
     return !asked_to_stop() && !desk_.look([](const Machine& m) { return m.ends_trial(); });
   }
 
   core::Result<std::optional<trial::Answer>> answer(const Question& question,
                                                     const std::optional<trial::Answer>&) override {
+    presence_.outside()->pause(false);
     desk_.tell([&](Machine& machine, Instant_ns now) {
       machine.asked({question.rig, question.length_m}, now);
     });
@@ -96,13 +125,15 @@ class AtKiosk final : public Trainee {
 
   bool goes_on(const wire::AssignedWork& work, const session::TrialReport& report,
                bool sent) override {
-    const std::uint64_t waiting = trials_waiting(folder_);
+    presence_.outside()->pause(false);
+    const std::uint64_t waiting = trials_waiting(kiosk_.folder);
     desk_.tell([&](Machine& machine, Instant_ns) { machine.waiting(waiting); });
     if (presence_.outside()->stopped())
       return overcome(FaultKind::stopped, session::stop_message(*presence_.outside()));
     if (!report.complete) return overcome(kind_of_fault(report.fault), report.fault);
     const kiosk::Outcome outcome{report.answer, work.trial->drills, sent};
     desk_.tell([&](Machine& machine, Instant_ns now) { machine.done(outcome, now); });
+    if (sent && !work.trial->drills) show_result(report.trial_id);
     return waits_to_go_on();
   }
 
@@ -110,28 +141,34 @@ class AtKiosk final : public Trainee {
   bool stays() const {
     return !asked_to_stop() && !desk_.look([](const Machine& machine) { return machine.leaves(); });
   }
+  /// Asks the server until the result is there, the trainee goes on, or it takes too long.
+  void show_result(const std::string& trial_id) {
+    for (int asked = 0; asked < kMostAsked; ++asked) {
+      const auto result = uplink::trial_result(kiosk_.server, ticket_, trial_id);
+      if (!result) return log_line(desk_, "no result was read: " + result.error().what);
+      desk_.tell([&](Machine& machine, Instant_ns) { machine.result(*result); });
+      if (result->state != wire::ResultState::assessing) return;
+      const Instant_ns again = kiosk_.clock.now() + kAskAgain_ns;
+      if (desk_.wait(goes_or_leaves,
+                     [&] { return asked_to_stop() || kiosk_.clock.now() > again; }) ||
+          asked_to_stop())
+        return;
+    }
+  }
   bool waits_to_go_on() { return desk_.wait(goes_or_leaves, asked_to_stop) && stays(); }
   /// A person looks at what is wrong, and says that it goes on.
   bool overcome(FaultKind kind, const std::string& what) {
+    log_line(desk_, what);
     desk_.tell([&](Machine& machine, Instant_ns now) { machine.failed(kind, what, now); });
     if (!waits_to_go_on()) return false;
     presence_.resume();
     return true;
   }
 
+  const Kiosk& kiosk_;
   Desk& desk_;
   Presence& presence_;
-  const session::StationFolder& folder_;
-};
-
-/// What every visit to this station shares.
-struct Kiosk {
-  const Options& options;
-  const session::StationFolder& folder;
-  uplink::Server& server;
-  Presence& presence;
-  Desk& desk;
-  const core::Clock& clock;
+  const uplink::Ticket& ticket_;
 };
 
 void tell_sign_in_error(Desk& desk, const core::Error& error) {
@@ -146,49 +183,15 @@ void tell_sign_in_error(Desk& desk, const core::Error& error) {
   });
 }
 
-/// What became of the newest trials, for a technician.
-std::vector<std::string> log_of(const session::StationFolder& folder) {
-  constexpr std::size_t kLines = 8;
-  std::vector<std::string> out;
-  const auto entries = folder.outbox().entries();
-  if (!entries) return {entries.error().what};
-  for (auto entry = entries->rbegin(); entry != entries->rend() && out.size() < kLines; ++entry)
-    out.push_back(fmt::format("{}: {}{}", entry->trial_id, core::name(entry->state),
-                              entry->reason.empty() ? "" : ", " + entry->reason));
-  return out;
-}
-
-/// As `tractus-station self-test`. A real device is tested at a terminal alone: it tells a person
-/// what will move, and waits.
-void test_for_technician(const Kiosk& kiosk) {
-  if (!devices::is_simulated(kiosk.options.setup.device))
-    return kiosk.desk.tell([](Machine& machine, Instant_ns now) {
-      machine.tested(core::Json::array(),
-                     "A real device is tested at a terminal: stop the kiosk and run "
-                     "tractus-station self-test, which says when to move the handle and when to "
-                     "let go.",
-                     now);
-    });
-  kiosk.presence.is(Presence::State::preparing);
-  Checked checked{kiosk.options, kiosk.folder, *kiosk.presence.outside()};
-  const auto report = test_station(checked);
-  core::Json findings = core::Json::array();
-  for (const check::Finding& finding : checked.findings) findings.push_back(finding.to_json());
-  const std::string why = report ? "" : report.error().what;
-  kiosk.presence.is(Presence::State::idle);
-  kiosk.desk.tell(
-      [&](Machine& machine, Instant_ns now) { machine.tested(std::move(findings), why, now); });
-}
-
 /// Trials that wait are sent again while nobody is signed in. That the server is away is no fault.
 void send_waiting(const Kiosk& kiosk) {
   if (auto sent = hand_over(kiosk.options, kiosk.folder); !sent)
-    std::fprintf(stderr, "warning: nothing was handed over: %s\n", sent.error().what.c_str());
+    log_line(kiosk.desk, "nothing was handed over: " + sent.error().what);
   const std::uint64_t waiting = trials_waiting(kiosk.folder);
-  const auto lines = log_of(kiosk.folder);
+  const auto lines = newest_trials(kiosk.folder);
   kiosk.desk.tell([&](Machine& machine, Instant_ns) {
     machine.waiting(waiting);
-    machine.log(lines);
+    machine.trials(lines);
   });
 }
 
@@ -208,7 +211,7 @@ std::optional<kiosk::Credentials> next_credentials(const Kiosk& kiosk) {
       continue;
     }
     if (kiosk.desk.look([](const Machine& m) { return m.screen() == Screen::testing; })) {
-      test_for_technician(kiosk);
+      test_for_technician(kiosk.options, kiosk.folder, kiosk.presence, kiosk.desk);
       continue;
     }
     std::optional<kiosk::Credentials> out;
@@ -223,18 +226,18 @@ void visit(const Kiosk& kiosk, const kiosk::Credentials& credentials) {
   auto ticket = uplink::sign_in(kiosk.server, credentials.badge, credentials.pin);
   if (!ticket) return tell_sign_in_error(kiosk.desk, ticket.error());
   kiosk.desk.tell([&](Machine& machine, Instant_ns) { machine.signed_in(ticket->name); });
-  AtKiosk trainee(kiosk.desk, kiosk.presence, kiosk.folder);
+  AtKiosk trainee(kiosk, *ticket);
   const auto tally =
       do_assigned(kiosk.options, kiosk.presence, kiosk.folder, kiosk.server, *ticket, trainee);
-  if (!tally) std::fprintf(stderr, "warning: %s\n", tally.error().what.c_str());
+  if (!tally) log_line(kiosk.desk, tally.error().what);
   const bool left = kiosk.desk.look([](const Machine& machine) { return machine.leaves(); });
   if (tally && !left && !asked_to_stop()) {
     kiosk.desk.tell([](Machine& machine, Instant_ns now) { machine.complete(now); });
     kiosk.desk.wait([](const Machine& machine) { return machine.leaves(); }, asked_to_stop);
   }
   uplink::sign_out(kiosk.server, *ticket);
-  const auto lines = log_of(kiosk.folder);
-  kiosk.desk.tell([&](Machine& machine, Instant_ns) { machine.log(lines); });
+  const auto lines = newest_trials(kiosk.folder);
+  kiosk.desk.tell([&](Machine& machine, Instant_ns) { machine.trials(lines); });
   kiosk.presence.is(Presence::State::idle);
   kiosk.desk.tell([](Machine& machine, Instant_ns now) { machine.signed_out(now); });
 }
@@ -277,6 +280,9 @@ core::Result<int> run_kiosk(const Options& given) {
                                          options.technician_pin_file.string()));
     desk.tell([&](Machine& machine, Instant_ns) { machine.technician_pin(pin); });
   }
+  desk.tell([about = about_station(options, folder)](Machine& machine, Instant_ns) {
+    machine.about(about);
+  });
   tell_recovered(desk, recovered);
   auto pages = TRY(kiosk::PageServer::open(desk, options.web, options.port));
   std::unique_ptr<KioskBrowser> browser;

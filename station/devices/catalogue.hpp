@@ -75,6 +75,7 @@ class SimulatedTrainee {
   virtual std::string name() const = 0;          ///< "simulated hand, seed 7"
   virtual bool done() const noexcept = 0;        ///< the plan is over
   virtual double progress() const noexcept = 0;  ///< 0 … 1
+  virtual void rest(bool on) noexcept = 0;       ///< a pause: the hand stays where it is
   virtual SimulatedAnswer answer() const = 0;    ///< after the loop has ended
 };
 

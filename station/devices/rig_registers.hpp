@@ -46,7 +46,8 @@ enum Status : std::uint16_t {
   kAtInnerStop = 1u << 3,  ///< x = 0
   kAtOuterStop = 1u << 4,  ///< x = travel
   kRotaryPowered = 1u << 5,
-  kSimulated = 1u << 7,  ///< always set by the peer that plays the rig
+  kStartPressed = 1u << 6,  ///< a person holds the start button of the panel; a rig may have none
+  kSimulated = 1u << 7,     ///< always set by the peer that plays the rig
 };
 enum class RigFault : std::uint8_t {
   none = 0,
@@ -86,9 +87,10 @@ enum WorldRegister : int {
   kStopButton = 4,        ///< 1: the e-stop is pressed
   kResetButton = 5,       ///< a person presses reset: acts on 0 → 1, once the e-stop is released
   kDriveError = 6,        ///< 1: the drive breaks down
-  kSurgeon = 7,  ///< 0: the hand is the registers; 1: the simulated surgeon pushes and turns
+  kSurgeon = 7,      ///< 0: the hand is the registers; 1: the simulated surgeon pushes and turns
+  kStartButton = 8,  ///< 1: the start button is pressed
 };
-inline constexpr int kWorldCount = 8;
+inline constexpr int kWorldCount = 9;
 
 /// 32 bits lie in two registers, upper half first, two's complement.
 inline std::int32_t wide(const std::uint16_t* at) noexcept {

@@ -39,7 +39,8 @@ core::Json json_of(const Live& live) {
 core::Json json_of(const Outcome& outcome) {
   return {{"answer", outcome.answer ? outcome.answer->to_json() : core::Json()},
           {"drilled", outcome.drilled},
-          {"sent", outcome.sent}};
+          {"sent", outcome.sent},
+          {"result", outcome.result ? outcome.result->to_json() : core::Json()}};
 }
 
 bool is_pin(const std::string& text) {
@@ -77,7 +78,11 @@ core::Json Machine::to_json() const {
                  {"waiting_trials", waiting_}};
   if (work_ && work_->trial) out["work"] = json_of(*work_);
   if (!technician_pin_.empty()) out["technician"] = true;
-  if (screen_ == Screen::technician) out["findings"] = findings_, out["log"] = log_;
+  if (screen_ == Screen::work) out["button"] = button_;
+  if (screen_ == Screen::paused) out["in_trial"] = pauses_trial();
+  if (screen_ == Screen::technician)
+    out["findings"] = findings_, out["trials"] = trials_, out["log"] = log_, out["about"] = about_;
+  if (screen_ == Screen::testing) out["test"] = {{"text", instruction_}, {"waits", waits_}};
   if (screen_ == Screen::running) out["live"] = json_of(live_);
   if (screen_ == Screen::answer)
     out["question"] = {{"rig", name(asked_.rig)}, {"length_m", asked_.length_m}};
@@ -172,13 +177,38 @@ core::Result<void> Machine::take_technician(const Command& command, core::Instan
     if (!is_pin(command.text)) return core::bad_input("pin: 1 to 12 digits are expected");
     judge_technician(command.text, now);
   } else if (command.kind == Kind::self_test && screen_ == Screen::technician) {
+    instruct("", false);
+    stops_test_ = false;
     show(Screen::testing, now);
+  } else if (command.kind == Kind::confirm && screen_ == Screen::testing && waits_) {
+    instruct(instruction_, false);
+  } else if (command.kind == Kind::stop_test && screen_ == Screen::testing) {
+    stops_test_ = true;
   } else if (command.kind == Kind::back && screen_ != Screen::testing && screen_ != Screen::badge) {
     show(Screen::badge, now);
   } else {
     return not_now(command);
   }
   return {};
+}
+
+/// A pause within a trial ends with the trial or by going on; another one by signing out as well.
+core::Result<void> Machine::take_pause(const Command& command, core::Instant_ns now) {
+  if (command.kind == Kind::resume) {
+    show(before_pause_, now);
+  } else if (command.kind == Kind::end_trial && pauses_trial()) {
+    end_paused_trial(now);
+  } else if (command.kind == Kind::sign_out && !pauses_trial()) {
+    return leave(now);
+  } else {
+    return not_now(command);
+  }
+  return {};
+}
+
+void Machine::end_paused_trial(core::Instant_ns now) {
+  ends_trial_ = true;
+  show(Screen::running, now);
 }
 
 core::Result<void> Machine::take(const Command& command, core::Instant_ns now) {
@@ -188,6 +218,7 @@ core::Result<void> Machine::take(const Command& command, core::Instant_ns now) {
   if (command.kind == Kind::badge) return take_badge(command, now);
   if (leaves_) return not_now(command);
   if (screen_ == Screen::fault) return take_fault(command, now);
+  if (screen_ == Screen::paused) return take_pause(command, now);
   if (command.kind == Kind::technician || screen_ >= Screen::technician_pin)
     return take_technician(command, now);
   if (at(Screen::pin, Kind::back)) {
@@ -206,13 +237,12 @@ core::Result<void> Machine::take(const Command& command, core::Instant_ns now) {
     show(Screen::saving, now);
   } else if (at(Screen::result, Kind::next)) {
     show(Screen::preparing, now);
-  } else if (at(Screen::work, Kind::pause) || at(Screen::result, Kind::pause)) {
+  } else if (at(Screen::work, Kind::pause) || at(Screen::result, Kind::pause) ||
+             at(Screen::running, Kind::pause)) {
     before_pause_ = screen_;
     show(Screen::paused, now);
-  } else if (at(Screen::paused, Kind::resume)) {
-    show(before_pause_, now);
   } else if (at(Screen::work, Kind::sign_out) || at(Screen::result, Kind::sign_out) ||
-             at(Screen::paused, Kind::sign_out) || at(Screen::complete, Kind::sign_out)) {
+             at(Screen::complete, Kind::sign_out)) {
     return leave(now);
   } else {
     return not_now(command);
@@ -253,6 +283,8 @@ bool Machine::tick(core::Instant_ns now) {
   } else if (screen_ == Screen::answer) {
     timed_out_ = true;
     show(Screen::saving, now);  // the trial is kept without an answer
+  } else if (pauses_trial()) {
+    end_paused_trial(now);
   } else {
     timed_out_ = leaves_ = true;
   }
@@ -290,8 +322,18 @@ void Machine::offered(const wire::AssignedWork& work, core::Instant_ns now) {
 void Machine::preparing() { screen_ = Screen::preparing; }
 
 void Machine::running(const Live& live) {
-  screen_ = Screen::running;
   live_ = live;
+  if (!pauses_trial()) screen_ = Screen::running;
+}
+
+void Machine::log(std::string line) {
+  log_.insert(log_.begin(), std::move(line));
+  if (log_.size() > kMostLines) log_.pop_back();
+}
+
+void Machine::instruct(const std::string& what, bool waits) {
+  instruction_ = what;
+  waits_ = waits;
 }
 
 void Machine::asked(const Asked& question, core::Instant_ns now) {

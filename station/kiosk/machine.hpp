@@ -10,6 +10,7 @@
 #include "core/json.hpp"
 #include "trial/trial.hpp"
 #include "wire/assigned_work.hpp"
+#include "wire/trial_result.hpp"
 
 namespace tractus::kiosk {
 
@@ -87,7 +88,9 @@ struct Command {
     retry,
     sign_out,
     technician,
-    self_test
+    self_test,
+    confirm,   ///< what the self-test asked for is done
+    stop_test  ///< the self-test ends with zero force
   };
   Kind kind = Kind::back;
   std::string text = {};                     ///< badge number or PIN
@@ -110,7 +113,9 @@ constexpr auto words(Command::Kind) {
                                           {Kind::retry, "retry"},
                                           {Kind::sign_out, "sign_out"},
                                           {Kind::technician, "technician"},
-                                          {Kind::self_test, "self_test"}});
+                                          {Kind::self_test, "self_test"},
+                                          {Kind::confirm, "confirm"},
+                                          {Kind::stop_test, "stop_test"}});
 }
 
 /// Without a touch for so long, s.
@@ -144,6 +149,7 @@ struct Outcome {
   std::optional<trial::Answer> answer;
   bool drilled = false;
   bool sent = false;  ///< the server has it; else it waits on this station's disk
+  std::optional<wire::TrialResult> result = {};  ///< as the server gives it to the trainee
 };
 
 /// One person at one station. The page's commands and the session's events change the screen; what
@@ -173,17 +179,29 @@ class Machine {
   void sign_in_failed(FaultKind kind, const std::string& what, core::Instant_ns now);
   void offered(const wire::AssignedWork& work, core::Instant_ns now);
   void preparing();
+  /// Not shown over a pause.
   void running(const Live& live);
   void asked(const Asked& question, core::Instant_ns now);
   void saving();
   void done(const Outcome& outcome, core::Instant_ns now);
+  /// Of the trial whose outcome is shown.
+  void result(wire::TrialResult result) { outcome_.result = std::move(result); }
   void failed(FaultKind kind, const std::string& what, core::Instant_ns now);
   void complete(core::Instant_ns now);
   /// The device has said that it is simulated, which its name does not always tell.
   void simulated() { simulated_ = true; }
   void waiting(std::uint64_t trials) { waiting_ = trials; }
+  /// The device has a button that starts a trial as well as a touch.
+  void has_button(bool has) { button_ = has; }
   /// For the technician: what became of this station's trials, the newest first.
-  void log(std::vector<std::string> lines) { log_ = std::move(lines); }
+  void trials(std::vector<std::string> lines) { trials_ = std::move(lines); }
+  /// For the technician: a line of the program's log; the last kMostLines are kept.
+  void log(std::string line);
+  static constexpr std::size_t kMostLines = 8;
+  /// For the technician: version, device, limits.
+  void about(core::Json about) { about_ = std::move(about); }
+  /// The self-test tells what will move. With `waits` it goes on after `confirm` alone.
+  void instruct(const std::string& what, bool waits);
   /// A self-test has ended. @param findings  of the report; empty with `why` there is none
   void tested(core::Json findings, const std::string& why, core::Instant_ns now);
   /// The session has ended: the next person.
@@ -194,6 +212,12 @@ class Machine {
   /// Whether the trainee leaves: the session's rounds end.
   bool leaves() const noexcept { return leaves_; }
   bool ends_trial() const noexcept { return ends_trial_; }
+  /// The trainee has paused the running trial.
+  bool pauses_trial() const noexcept {
+    return screen_ == Screen::paused && before_pause_ == Screen::running;
+  }
+  bool waits_for_confirmation() const noexcept { return waits_; }
+  bool stops_test() const noexcept { return stops_test_; }
   /// In `answer`, after the command; nothing after a time-out.
   const std::optional<trial::Answer>& answer() const noexcept { return answer_; }
 
@@ -205,6 +229,8 @@ class Machine {
   core::Result<void> take_badge(const Command& command, core::Instant_ns now);
   core::Result<void> take_fault(const Command& command, core::Instant_ns now);
   core::Result<void> leave(core::Instant_ns now);
+  core::Result<void> take_pause(const Command& command, core::Instant_ns now);
+  void end_paused_trial(core::Instant_ns now);
   core::Result<void> take_technician(const Command& command, core::Instant_ns now);
   void judge_technician(const std::string& pin, core::Instant_ns now);
   bool technician_locked(core::Instant_ns now) const noexcept;
@@ -226,7 +252,10 @@ class Machine {
   std::optional<trial::Answer> answer_;
   Outcome outcome_;
   std::uint64_t waiting_ = 0;
-  std::vector<std::string> log_;
+  std::vector<std::string> trials_, log_;
+  core::Json about_ = core::Json::object();
+  std::string instruction_;  ///< of the self-test
+  bool waits_ = false, stops_test_ = false, button_ = false;
   std::string technician_pin_;
   int wrong_pins_ = 0;
   core::Instant_ns wrong_at_ = 0;

@@ -199,6 +199,55 @@ TEST_F(KioskMachine, APauseIsLongerAndComesBackToItsScreen) {
   EXPECT_TRUE(machine_.leaves());
 }
 
+TEST_F(KioskMachine, ATrialIsPausedAndGoesOnOrEnds) {
+  to_work();
+  expect_taken(command(Kind::start));
+  machine_.running({.t_s = 1.0});
+  EXPECT_FALSE(machine_.pauses_trial());
+  expect_taken(command(Kind::pause));
+  EXPECT_TRUE(machine_.pauses_trial());
+  machine_.running({.t_s = 1.0});  // the session goes on telling
+  EXPECT_EQ(screen(), Screen::paused);
+  EXPECT_EQ(machine_.to_json()["in_trial"], true);
+  expect_refused(command(Kind::sign_out));
+  expect_refused(command(Kind::start));
+  expect_taken(command(Kind::resume));
+  EXPECT_EQ(screen(), Screen::running);
+  EXPECT_FALSE(machine_.pauses_trial());
+  expect_taken(command(Kind::pause));
+  expect_taken(command(Kind::end_trial));
+  EXPECT_TRUE(machine_.ends_trial());
+  EXPECT_FALSE(machine_.pauses_trial());
+}
+
+TEST_F(KioskMachine, APauseOfATrialThatNobodyEndsEndsTheTrial) {
+  to_work();
+  expect_taken(command(Kind::start));
+  machine_.running({.t_s = 1.0});
+  expect_taken(command(Kind::pause));
+  wait_s(899.0);
+  EXPECT_FALSE(machine_.ends_trial());
+  wait_s(2.0);
+  EXPECT_TRUE(machine_.ends_trial());
+  machine_.asked({trial::Rig::palpation, 0.05}, now_);
+  wait_s(601.0);
+  EXPECT_EQ(screen(), Screen::saving) << "kept without an answer";
+  machine_.done({}, now_);
+  EXPECT_TRUE(machine_.leaves());
+}
+
+TEST_F(KioskMachine, AResultComesToItsScreen) {
+  to_answer();
+  machine_.done({.answer = {}, .drilled = false, .sent = true}, now_);
+  EXPECT_TRUE(machine_.to_json()["outcome"]["result"].is_null());
+  machine_.result({.state = wire::ResultState::assessed,
+                   .correct = true,
+                   .scores = {{"Operation time", "s", "number", 12.5}}});
+  const auto result = machine_.to_json()["outcome"]["result"];
+  EXPECT_EQ(result["state"], "assessed");
+  EXPECT_EQ(result["scores"][0]["value"], 12.5);
+}
+
 TEST_F(KioskMachine, AnUnansweredTrialIsKeptWithoutAnAnswer) {
   to_answer();
   wait_s(601.0);
@@ -224,6 +273,36 @@ TEST_F(KioskMachine, TheTechniciansMenuIsBehindItsPin) {
   EXPECT_EQ(machine_.to_json()["findings"][0]["name"], "disk");
   expect_taken(command(Kind::back));
   EXPECT_EQ(screen(), Screen::badge);
+}
+
+TEST_F(KioskMachine, ASelfTestWaitsForTheTechnicianAndIsStoppedByOne) {
+  machine_.technician_pin("8642");
+  expect_taken(command(Kind::technician));
+  expect_taken(command(Kind::pin, "8642"));
+  expect_refused(command(Kind::stop_test));
+  expect_taken(command(Kind::self_test));
+  expect_refused(command(Kind::confirm));  // nothing was asked
+  machine_.instruct("Keep clear.", true);
+  EXPECT_EQ(machine_.to_json()["test"], (core::Json{{"text", "Keep clear."}, {"waits", true}}));
+  EXPECT_TRUE(machine_.waits_for_confirmation());
+  expect_taken(command(Kind::confirm));
+  EXPECT_FALSE(machine_.waits_for_confirmation());
+  expect_taken(command(Kind::stop_test));
+  EXPECT_TRUE(machine_.stops_test());
+  machine_.tested(core::Json::array(), "stopped", now_);
+  expect_taken(command(Kind::self_test));
+  EXPECT_FALSE(machine_.stops_test()) << "the next test begins anew";
+}
+
+TEST_F(KioskMachine, ShowsTheTechnicianTheNewestLinesOfTheLog) {
+  machine_.technician_pin("8642");
+  for (int i = 1; i <= 10; ++i) machine_.log("line " + std::to_string(i));
+  EXPECT_FALSE(machine_.to_json().contains("log")) << "not before the PIN";
+  expect_taken(command(Kind::technician));
+  expect_taken(command(Kind::pin, "8642"));
+  const auto log = machine_.to_json()["log"];
+  ASSERT_EQ(log.size(), Machine::kMostLines);
+  EXPECT_EQ(log[0], "line 10");
 }
 
 TEST_F(KioskMachine, FiveWrongTechniciansPinsLockTheMenuForThreeMinutes) {

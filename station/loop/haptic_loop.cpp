@@ -48,8 +48,10 @@ void HapticLoop::tick(core::Instant_ns now, std::uint32_t number, bool late) noe
   const bool usable = status == Status::ok && plausible(sample.X_DH);
   if (usable) X_DH_ = sample.X_DH;  // else the last good pose stands, flagged
   const math::Pose X_VH = X_VD_ * X_DH_;
-  const double t_s = static_cast<double>(now - periods_.started()) * 1e-9;
-  const std::uint32_t patches = parts_.tool ? parts_.tool->apply(t_s) : 0;
+  const bool paused = parts_.limiter.paused();
+  timeline_.tick(now, number, paused);
+  const double t_s = timeline_.t_s(periods_.started());
+  const std::uint32_t patches = parts_.tool && !paused ? parts_.tool->apply(t_s) : 0;
   laws::PalpationStep step;
   if (usable)
     step = parts_.contact.step({.X_VH = X_VH,
@@ -76,15 +78,17 @@ void HapticLoop::tick(core::Instant_ns now, std::uint32_t number, bool late) noe
   const bool bent = step.deflection_m.allFinite();
   out.deflection_m = {bent ? float(step.deflection_m.x()) : 0.0f,
                       bent ? float(step.deflection_m.y()) : 0.0f};
-  out.tick = number;
+  out.tick = timeline_.number();
   out.iterations = static_cast<std::uint16_t>(std::clamp(step.iterations, 0, 65535));
   out.flags = static_cast<std::uint16_t>(
       (step.converged ? 0 : trial::kNotConverged) | (passed.limited ? trial::kLimited : 0) |
       (late ? trial::kLate : 0) | (passed.stale ? trial::kStale : 0) |
       (sample.saturated ? trial::kSaturated : 0) | (sample.buttons & 1u ? trial::kPressed : 0));
   out.patches = patches;
-  if (parts_.tool) parts_.tool->worked(out);
-  periods_.count(out.flags, parts_.ring.push(out));
+  if (!paused) {
+    if (parts_.tool) parts_.tool->worked(out);
+    periods_.count(out.flags, parts_.ring.push(out));
+  }
   parts_.live.write(
       {.t_s = out.t_s,
        .p_VH_m = array_of(Vec3(X_VH.p + pose_offset_m_)),
@@ -92,7 +96,7 @@ void HapticLoop::tick(core::Instant_ns now, std::uint32_t number, bool late) noe
        .deflection_m = {out.deflection_m[0], out.deflection_m[1]},
        .rendered_force_N = array_of(rendered_H),
        .rendered_torque_Nm = array_of(Vec3(q_DH.conjugate() * passed.wrench.torque_Nm)),
-       .tick = number,
+       .tick = out.tick,
        .late_ticks = static_cast<std::uint32_t>(counts().late),
        .buttons = sample.buttons});
 }

@@ -8,6 +8,7 @@
 #include "station/loop/contact.hpp"
 #include "station/loop/limiter.hpp"
 #include "station/loop/live_state.hpp"
+#include "station/loop/pause.hpp"
 #include "station/loop/periodic_loop.hpp"
 #include "station/loop/ring.hpp"
 #include "station/loop/tool.hpp"
@@ -43,8 +44,9 @@ class HapticLoop {
   HapticLoop(Parts parts, const math::Pose& X_VD, const math::Vec3& pose_offset_m, double rate_Hz);
 
   /// Runs until `stop()` or the limiter latches; absolute deadlines from now on. `each_tick` (may
-  /// be empty) runs after each tick; in real time it is under the tick's rules. The device is left
-  /// at zero force.
+  /// be empty) runs after each tick; in real time it is under the tick's rules. While the limiter
+  /// is paused the device is read and gets zero force, but nothing is recorded and no bone is worn.
+  /// The device is left at zero force.
   void run(const std::function<void()>& each_tick = {}) noexcept;
   /// One tick of the given stamp and number: what `run` calls. Real-time safe.
   void tick(core::Instant_ns now, std::uint32_t number, bool late) noexcept;
@@ -63,6 +65,7 @@ class HapticLoop {
   math::Pose X_DH_;  ///< the last good one
   math::Vec3 pose_offset_m_;
   PeriodicLoop periods_;
+  TrialTimeline timeline_;
   safety::EnergyObserver energy_;
 };
 

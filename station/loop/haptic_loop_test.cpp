@@ -160,6 +160,28 @@ TEST(HapticLoop, HoldsTheLastPoseThroughAStaleSampleAndFlagsIt) {
   EXPECT_EQ(out[0].p_VH_m, (std::array<double, 3>{0.01, 0.02, 0.03}));
 }
 
+TEST(HapticLoop, APauseHasNoSamplesAndNoTimeInTheTrial) {
+  Rig<core::ManualClock> rig;
+  rig.contact.push_N = 0.0;
+  rig.limiter.arm();
+  int ticks = 0;
+  rig.loop.run([&] {
+    ++ticks;
+    if (ticks == 100) rig.limiter.pause(true);
+    if (ticks == 300) rig.limiter.pause(false);
+    if (ticks == 400) rig.loop.stop();
+  });
+  std::vector<trial::Sample> samples(1024);
+  samples.resize(rig.ring.pop(samples));
+  // 400 ticks less the 200 of the pause, 0.25 ms and one tick apart throughout.
+  ASSERT_EQ(samples.size(), 200u);
+  EXPECT_EQ(rig.loop.counts().samples, 200u);
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    EXPECT_EQ(samples[i].tick, i);
+    EXPECT_NEAR(samples[i].t_s, 0.25e-3 * double(i), 1e-9);
+  }
+}
+
 TEST(HapticLoop, CountsWhatTheRingCouldNotTake) {
   Rig<core::ManualClock> rig;
   rig.limiter.arm();

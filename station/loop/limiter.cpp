@@ -151,10 +151,10 @@ Limiter::Passed Limiter::pass(core::Instant_ns now, Status status, const Sample&
   Passed out;
   out.stale = is_stale(now, status, sample);
   const bool starts = machine_.state() == Guard::waiting;
-  const double part =
-      machine_.tick(elapsed, {.fault = inspect(now, status, sample, wanted),
-                              .fresh = !out.stale,
-                              .ready = !starts || wanted.force_N.norm() < kQuiet_N});
+  const double part = machine_.tick(
+      elapsed, {.fault = inspect(now, status, sample, wanted),
+                .fresh = !out.stale,
+                .ready = !pause_.on() && (!starts || wanted.force_N.norm() < kQuiet_N)});
   if (out.stale || guard() == Guard::off || guard() == Guard::latched) {
     last_ = {};
     out.limited = !(wanted.force_N.isZero(0.0) && wanted.torque_Nm.isZero(0.0));

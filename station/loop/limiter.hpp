@@ -7,6 +7,7 @@
 #include "core/json.hpp"
 #include "station/devices/device.hpp"
 #include "station/loop/decreasing_limit.hpp"
+#include "station/loop/pause.hpp"
 #include "station/safety/machine.hpp"
 
 namespace tractus::loop {
@@ -65,6 +66,13 @@ class Limiter {
   /// From any thread, while ticks run: no more force than this from the next tick on. A second call
   /// that asks for more changes nothing.
   void cap_force(double force_N) noexcept { cap_N_.lower(force_N); }
+  /// From any thread, while ticks run: force and torque go to zero at the slew rate and stay there;
+  /// without the pause they come back as after arming, through a quiet moment and the ramp.
+  void pause(bool on) noexcept { pause_.set(on); }
+  /// A pause is asked for, and nothing leaves any more.
+  bool paused() const noexcept {
+    return pause_.on() && last_.force_N.isZero(0.0) && last_.torque_Nm.isZero(0.0);
+  }
 
   struct Passed {
     math::Wrench wrench;
@@ -87,6 +95,7 @@ class Limiter {
 
   HandLimits limits_;
   DecreasingLimit cap_N_;
+  PauseSwitch pause_;
   core::Instant_ns period_;
   safety::Machine machine_;
   math::Wrench last_;

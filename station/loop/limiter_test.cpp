@@ -65,6 +65,45 @@ TEST(Limiter, WaitsForAQuietMomentBeforeTheRamp) {
   EXPECT_EQ(bench.limiter.guard(), Guard::waiting);
 }
 
+TEST(Limiter, APauseTakesTheForceAwayAtTheSlewRateAndItComesBackByTheRamp) {
+  HandLimits limits;
+  limits.max_force_slew_N_per_s = 2000.0;  // 0.5 N in a tick of 0.25 ms
+  limits.ramp_s = 0.2;
+  LimiterBench bench(limits);
+  bench.settle();
+  for (int i = 0; i < 50; ++i) bench.tick(push(3.0));
+  bench.limiter.pause(true);
+  EXPECT_FALSE(bench.limiter.paused());
+  double last_N = 3.0;
+  for (int i = 0; i < 7; ++i) {  // 3 N / 0.5 N, and one for the rounding
+    const double now_N = bench.tick(push(3.0)).wrench.force_N.x();
+    EXPECT_LE(last_N - now_N, 0.5 + 1e-9);
+    last_N = now_N;
+  }
+  EXPECT_TRUE(bench.limiter.paused());
+  for (int i = 0; i < 4000; ++i) ASSERT_TRUE(bench.tick(push(3.0)).wrench.force_N.isZero(0.0));
+
+  bench.limiter.pause(false);
+  for (int i = 0; i < 100; ++i)
+    ASSERT_TRUE(bench.tick(push(3.0)).wrench.force_N.isZero(0.0)) << "the hand is in the wall yet";
+  for (int i = 0; i < Limiter::kQuietTicks; ++i) bench.tick({});
+  for (int i = 0; i < 400; ++i) last_N = bench.tick(push(3.0)).wrench.force_N.x();
+  EXPECT_NEAR(last_N, 1.5, 0.02) << "half of the ramp of 0.2 s";
+}
+
+TEST(Limiter, AFaultInAPauseLatches) {
+  LimiterBench bench;
+  bench.settle();
+  bench.limiter.pause(true);
+  for (int i = 0; i < 10; ++i) bench.tick({});
+  bench.status = Status::gone;
+  bench.tick({});
+  EXPECT_EQ(bench.limiter.fault(), Fault::unplugged);
+  bench.limiter.pause(false);
+  bench.status = Status::ok;
+  for (int i = 0; i < 1000; ++i) ASSERT_TRUE(bench.tick(push(1.0)).wrench.force_N.isZero(0.0));
+}
+
 TEST(Limiter, RampsFromNothingToAllInTheStatedTime) {
   HandLimits limits;
   limits.ramp_s = 0.5;

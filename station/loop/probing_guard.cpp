@@ -71,6 +71,15 @@ safety::Fault ProbingGuard::tare(const devices::RigReading& r) noexcept {
   return safety::Fault::none;
 }
 
+/// In a pause, and after it until the hand lets go.
+bool ProbingGuard::held_back() noexcept {
+  if (pause_.on())
+    after_pause_ = true;
+  else if (fresh_ && std::abs(last_.fz_N - tare_N_) < kTareMost_N)
+    after_pause_ = false;
+  return after_pause_;
+}
+
 ProbingGuard::LawInput ProbingGuard::see(devices::Exchange how,
                                          const devices::RigReading& reading) noexcept {
   fresh_ = how == devices::Exchange::ok;
@@ -80,9 +89,9 @@ ProbingGuard::LawInput ProbingGuard::see(devices::Exchange how,
     fault = fault_of(reading);
     if (!tare_known_ && fault == safety::Fault::none && !latched()) fault = tare(reading);
   }
-  share_ =
-      machine_.tick(core::Instant_ns(1e9 * period_s_),
-                    {.fault = fault, .fresh = fresh_, .ready = tare_known_ && !stopped_itself_});
+  share_ = machine_.tick(
+      core::Instant_ns(1e9 * period_s_),
+      {.fault = fault, .fresh = fresh_, .ready = tare_known_ && !stopped_itself_ && !held_back()});
   if (!fresh_) return {};
   return {.fz_N = tare_known_ ? reading.fz_N - tare_N_ : 0.0,
           .tz_Nm = tare_known_ ? reading.tz_Nm - tare_Nm_ : 0.0,

@@ -1,11 +1,13 @@
 /// What stands between the law and the probing rig's drives: safety.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 
 #include "core/json.hpp"
 #include "station/devices/rig_device.hpp"
 #include "station/loop/decreasing_limit.hpp"
+#include "station/loop/pause.hpp"
 #include "station/safety/machine.hpp"
 
 namespace tractus::loop {
@@ -42,6 +44,7 @@ class ProbingGuard {
  public:
   static constexpr double kTare_s = 0.2, kTareMost_N = 10.0;
   static constexpr double kSilent_s = 0.05, kPushed_s = 0.5, kApproach_s = 0.01;
+  static constexpr double kStill_m_s = 1e-4;
   static constexpr int kMostRestarts = 100;
 
   /// What the law is given to see, and what it wanted with it.
@@ -66,6 +69,14 @@ class ProbingGuard {
   /// on. A second call that asks for more changes nothing.
   void cap_push(double push_N) noexcept { cap_N_.lower(push_N); }
 
+  /// From any thread, while ticks run: the drive is switched off. Without the pause it is enabled
+  /// anew once the hand pushes with less than kTareMost_N.
+  void pause(bool on) noexcept { pause_.set(on); }
+  /// A pause is asked for, the drive is off, and the stage stands still.
+  bool paused() const noexcept {
+    return pause_.on() && !enabled() && std::abs(last_.speed_m_s) < kStill_m_s;
+  }
+
   safety::State state() const noexcept { return machine_.state(); }
   bool latched() const noexcept { return state() == safety::State::latched; }
   safety::Fault fault() const noexcept { return machine_.fault(); }
@@ -83,13 +94,16 @@ class ProbingGuard {
   safety::Fault tare(const devices::RigReading& reading) noexcept;
   bool held_by_push() noexcept;
   double within_travel(double speed_m_s) const noexcept;
+  bool held_back() noexcept;
 
   RigLimits limits_;
   DecreasingLimit cap_N_;
+  PauseSwitch pause_;
   double travel_m_, period_s_;
   safety::Machine machine_;
   devices::RigReading last_;
-  bool fresh_ = false, tare_known_ = false, stopped_itself_ = false, reset_edge_ = false;
+  bool fresh_ = false, tare_known_ = false, stopped_itself_ = false, reset_edge_ = false,
+       after_pause_ = false;
   double share_ = 0.0, pushed_s_ = 0.0;
   double tare_N_ = 0.0, tare_Nm_ = 0.0;
   int tared_ = 0, restarts_ = 0;

@@ -105,6 +105,26 @@ TEST_F(TheGuard, WithoutAnAnswerNothingMovesAndAfterFiftyMillisecondsItLatches) 
   EXPECT_FALSE(tick(at(0.02), 0.1).command.enable);  // no way back
 }
 
+TEST_F(TheGuard, APauseSwitchesTheDriveOffUntilTheHandHasLetGo) {
+  enable();
+  for (int k = 0; k < 5; ++k) tick(at(0.01, 50.0), 0.1);
+  guard_.pause(true);
+  EXPECT_FALSE(tick(at(0.01, 50.0), 0.1).command.enable);
+  EXPECT_TRUE(guard_.paused());
+  for (int k = 0; k < 1000; ++k) {
+    const auto passed = tick(at(0.01, 50.0), 0.1);
+    ASSERT_FALSE(passed.command.enable || passed.command.rotary_on);
+    ASSERT_EQ(passed.command.speed_m_s, 0.0);
+  }
+  guard_.pause(false);
+  for (int k = 0; k < 100; ++k)
+    ASSERT_FALSE(tick(at(0.01, 11.0), 0.1).command.enable) << "above kTareMost_N, 10 N";
+  tick(at(0.01, 2.0), 0.1);
+  EXPECT_TRUE(guard_.enabled());
+  tick(at(0.01, 2.0), 0.1);
+  EXPECT_GT(tick(at(0.01, 50.0), 0.1).command.speed_m_s, 0.0) << "and then by the law";
+}
+
 TEST_F(TheGuard, RubbishAndAClosedLineLatchAtOnce) {
   for (const auto& [how, fault] : {std::pair{Exchange::garbage, safety::Fault::garbage},
                                    {Exchange::gone, safety::Fault::gone}}) {

@@ -75,6 +75,8 @@ ProbingSample ProbingLoop::tick(core::Instant_ns now, std::uint32_t number, bool
   const Exchange how = parts_.device.exchange(command_, reading_);
   const core::Instant_ns round_trip = parts_.wall.now() - asked;
   const ProbingGuard::LawInput seen = parts_.guard.see(how, reading_);
+  paused_ = parts_.guard.paused();
+  timeline_.tick(now, number, paused_);
   ProbingSample out;
   double torque_Nm = 0.0;
   if (seen.fresh) {
@@ -87,8 +89,8 @@ ProbingSample ProbingLoop::tick(core::Instant_ns now, std::uint32_t number, bool
   const ProbingGuard::Passed passed = parts_.guard.pass(double(out.law_m_s), torque_Nm);
   command_ = passed.command;
   if (out.mode != ProbingMode::stopped && !parts_.guard.enabled()) out.mode = ProbingMode::holding;
-  stopped_s_ = out.mode == ProbingMode::stopped ? stopped_s_ + period_s_ : 0.0;
-  out.t_s = static_cast<double>(now - periods_.started()) * 1e-9;
+  if (!paused_) stopped_s_ = out.mode == ProbingMode::stopped ? stopped_s_ + period_s_ : 0.0;
+  out.t_s = timeline_.t_s(periods_.started());
   out.x_m = reading_.x_m;
   out.theta_rad = theta_rad_;
   out.speed_m_s = float(reading_.speed_m_s);
@@ -97,7 +99,7 @@ ProbingSample ProbingLoop::tick(core::Instant_ns now, std::uint32_t number, bool
   out.tz_Nm = float(reading_.tz_Nm - parts_.guard.tare_Nm());
   out.command_m_s = float(command_.speed_m_s);
   out.command_Nm = float(command_.torque_Nm);
-  out.tick = number;
+  out.tick = timeline_.number();
   out.fault = std::uint8_t(reading_.fault);
   out.flags = static_cast<std::uint16_t>((passed.limited ? trial::kLimited : 0) |
                                          (late ? trial::kLate : 0) |
@@ -107,7 +109,7 @@ ProbingSample ProbingLoop::tick(core::Instant_ns now, std::uint32_t number, bool
 
 void ProbingLoop::record(ProbingSample& sample, core::Instant_ns deadline) noexcept {
   if (parts_.clock.now() > deadline + periods_.period()) sample.flags |= trial::kMissed;
-  periods_.count(sample.flags, parts_.ring.push(sample));
+  if (!paused_) periods_.count(sample.flags, parts_.ring.push(sample));
   const trial::TickCounts& n = counts();
   parts_.live.write({.t_s = sample.t_s,
                      .x_m = sample.x_m,

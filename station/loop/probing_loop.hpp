@@ -7,6 +7,7 @@
 #include "models/probing_runtime.hpp"
 #include "station/devices/rig_device.hpp"
 #include "station/loop/live_state.hpp"
+#include "station/loop/pause.hpp"
 #include "station/loop/periodic_loop.hpp"
 #include "station/loop/probing_guard.hpp"
 #include "station/loop/ring.hpp"
@@ -43,7 +44,8 @@ class ProbingLoop {
   ProbingLoop(Parts parts, const models::ProbingRuntime& law, double travel_m, double rate_Hz);
 
   /// Until `stop()`, or the guard latches, or the probe has stood at its stop for kStopped_s.
-  /// `each_tick` (may be empty) runs after each tick under the tick's rules. The drive is left off.
+  /// `each_tick` (may be empty) runs after each tick under the tick's rules. While the guard is
+  /// paused the rig is read, but nothing is recorded. The drive is left off.
   void run(const std::function<void(const trial::ProbingSample&)>& each_tick = {}) noexcept;
   /// From any thread.
   void stop() noexcept { periods_.stop(); }
@@ -73,6 +75,8 @@ class ProbingLoop {
   std::atomic<const models::ProbingRuntime*> law_;
   double travel_m_, period_s_;
   PeriodicLoop periods_;
+  TrialTimeline timeline_;
+  bool paused_ = false;
   models::ProbingLive at_;
   devices::RigReading reading_;
   devices::RigCommand command_;

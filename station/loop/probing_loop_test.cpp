@@ -154,6 +154,28 @@ TEST(ProbingLoop, CountsWhatWasLateSkippedOrLostAndSaysSoInTheSamples) {
   EXPECT_EQ(bench.loop.counts().skipped, counts.skipped);
 }
 
+TEST(ProbingLoop, APauseStandsStillAndHasNoSamplesAndNoTimeInTheTrial) {
+  ProbingBench bench;
+  std::size_t ticks = 0;
+  double x_before_m = 0.0;
+  bench.run(1000, [&](const trial::ProbingSample& sample) {
+    ++ticks;
+    if (ticks == 250) bench.guard.pause(true);  // 50 ms after the tare
+    if (ticks == 300) x_before_m = sample.x_m;
+    if (ticks == 500) {
+      EXPECT_EQ(sample.x_m, x_before_m);
+      bench.guard.pause(false);
+    }
+  });
+  // The drive is off one exchange after the pause was asked for, and the stage stands one later.
+  EXPECT_NEAR(double(bench.samples.size()), 750.0, 3.0);
+  for (std::size_t i = 1; i < bench.samples.size(); ++i) {
+    EXPECT_EQ(bench.samples[i].tick, i);
+    EXPECT_NEAR(bench.samples[i].t_s - bench.samples[i - 1].t_s, 1e-3, 1e-6);
+  }
+  EXPECT_GT(bench.samples.back().x_m, x_before_m) << "it goes on";
+}
+
 TEST(ProbingLoop, EndsWithTheGuardAndLeavesTheDriveOff) {
   ProbingBench bench;
   bench.device.how.assign(301, Exchange::ok);

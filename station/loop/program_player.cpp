@@ -30,7 +30,7 @@ MotionProgram approach(const MotionProgram& program, double from_m) {
 ProgramPlayer::ProgramPlayer(Parts parts, double rate_Hz) : parts_(parts), rate_Hz_(rate_Hz) {}
 
 std::vector<ProgramPlayer::Moment> ProgramPlayer::schedule(const MotionProgram& program,
-                                                           int repetitions, double from_m) const {
+                                                           int repetitions) const {
   std::vector<Moment> out;
   const auto add = [&](const MotionProgram& part, int trial) {
     const auto motion = part.motion(1.0 / rate_Hz_);
@@ -39,7 +39,7 @@ std::vector<ProgramPlayer::Moment> ProgramPlayer::schedule(const MotionProgram& 
           {motion.x_m[i], motion.v_m_s[i], motion.theta_rad[i], motion.omega_rad_s[i], trial});
   };
   for (int k = 0; k < repetitions; ++k) {
-    add(approach(program, k == 0 ? from_m : program.moves.back().to_m), -1);
+    add(approach(program, k == 0 ? 0.0 : program.moves.back().to_m), -1);
     add(program, k);
   }
   return out;
@@ -53,9 +53,9 @@ void ProgramPlayer::follow_angle(std::int32_t angle_urad) noexcept {
   angle_known_ = true;
 }
 
-Result<std::vector<ProbingMeasurement>> ProgramPlayer::play(
-    const MotionProgram& program, int repetitions, const std::function<bool(double)>& on_tick) {
-  const auto moments = schedule(program, repetitions, 0.0);
+Result<std::vector<ProbingMeasurement>> ProgramPlayer::play(const MotionProgram& program,
+                                                            int repetitions, Playing& playing) {
+  const auto moments = schedule(program, repetitions);
   std::vector<ProbingMeasurement> out(static_cast<std::size_t>(repetitions));
   const std::size_t longest = std::size_t(program.seconds() * rate_Hz_) + 2;
   for (std::size_t k = 0; k < out.size(); ++k) {
@@ -69,7 +69,6 @@ Result<std::vector<ProbingMeasurement>> ProgramPlayer::play(
   devices::RigCommand command;
   std::size_t at = 0;
   std::uint32_t last = 0;
-  bool stopped = false;
   periods.run(
       [&](const PeriodicLoop::Tick& tick) {
         const auto seen = parts_.guard.see(parts_.device.exchange(command, reading), reading);
@@ -92,12 +91,12 @@ Result<std::vector<ProbingMeasurement>> ProgramPlayer::play(
         last = tick.number;
       },
       [&] {
-        stopped = on_tick && !on_tick(std::min(1.0, double(at) / double(moments.size())));
-        return !stopped && !parts_.guard.latched() && at < moments.size();
+        playing.share = std::min(1.0, double(at) / double(moments.size()));
+        return !playing.stop && !parts_.guard.latched() && at < moments.size();
       });
   for (int k = 0; k < kLastCommands; ++k)
     if (parts_.device.exchange({}, reading) == devices::Exchange::gone) break;
-  if (stopped) return Error{Errc::cancelled, "stopped"};
+  if (playing.stop && at < moments.size()) return Error{Errc::cancelled, "stopped"};
   if (parts_.guard.latched())
     return Error{Errc::unavailable,
                  fmt::format("the rig stopped while it played: {}", text_of(parts_.guard.fault()))};

@@ -1,7 +1,7 @@
 /// Plays a motion on the probing rig by itself and records what its sensors say: no hand, no law.
 #pragma once
 
-#include <functional>
+#include <atomic>
 #include <vector>
 
 #include "core/result.hpp"
@@ -12,6 +12,12 @@
 #include "trial/probing_set.hpp"
 
 namespace tractus::loop {
+
+/// What another thread sees and asks while a program is played.
+struct Playing {
+  std::atomic<double> share = 0.0;  ///< that is done, 0 … 1
+  std::atomic<bool> stop = false;   ///< ends the recording
+};
 
 /// Speed commands follow the program's own and lead back what is left of the position:
 ///
@@ -27,12 +33,10 @@ class ProgramPlayer {
   };
   ProgramPlayer(Parts parts, double rate_Hz);
 
-  /// Moves from where the stage stands to the program's start, plays it, and so on as often as asked; each time a trial.
-  /// @param on_tick  share that is done, 0 … 1; false stops. Under the rules of real time.
+  /// Moves from depth 0, where the stage stands, to the program's start, plays it, and so on as often as asked; each time a trial.
   /// Errors: unavailable naming what the guard or the machine stopped it for; cancelled.
-  core::Result<std::vector<trial::ProbingMeasurement>> play(
-      const trial::MotionProgram& program, int repetitions,
-      const std::function<bool(double)>& on_tick = {});
+  core::Result<std::vector<trial::ProbingMeasurement>> play(const trial::MotionProgram& program,
+                                                            int repetitions, Playing& playing);
 
   static constexpr double kFollow_per_s = 20.0;
   static constexpr double kApproach_m_s = 0.01;  ///< to the start
@@ -44,8 +48,7 @@ class ProgramPlayer {
     double x_m, v_m_s, theta_rad, omega_rad_s;
     int trial;
   };
-  std::vector<Moment> schedule(const trial::MotionProgram& program, int repetitions,
-                               double from_m) const;
+  std::vector<Moment> schedule(const trial::MotionProgram& program, int repetitions) const;
   void follow_angle(std::int32_t angle_urad) noexcept;
 
   Parts parts_;

@@ -11,7 +11,7 @@ using devices::rig::RigFault;
 
 /// What people and breakdowns do to the electronics in one step.
 struct Panel {
-  bool stop_pressed = false, reset_pressed = false, drive_error = false;
+  bool stop_pressed = false, reset_pressed = false, drive_error = false, start_pressed = false;
 };
 
 /// The logic of the electronics, stepped with the physics.

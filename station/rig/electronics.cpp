@@ -36,7 +36,7 @@ World world_of(const std::uint16_t* at) {
   return {1e-3 * registers::wide(at + registers::kHandForce_mN),
           1e-6 * registers::wide(at + registers::kHandTorqueIn_uNm),
           {at[registers::kStopButton] != 0, at[registers::kResetButton] != 0,
-           at[registers::kDriveError] != 0},
+           at[registers::kDriveError] != 0, at[registers::kStartButton] != 0},
           at[registers::kSurgeon] != 0};
 }
 
@@ -46,6 +46,7 @@ void put_world(const World& world, std::uint16_t* at) {
   at[registers::kStopButton] = world.panel.stop_pressed;
   at[registers::kResetButton] = world.panel.reset_pressed;
   at[registers::kDriveError] = world.panel.drive_error;
+  at[registers::kStartButton] = world.panel.start_pressed;
   at[registers::kSurgeon] = world.surgeon;
 }
 

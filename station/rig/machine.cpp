@@ -43,6 +43,7 @@ Reading Machine::reading() const noexcept {
   if (linear_.at_inner_stop()) status |= registers::kAtInnerStop;
   if (linear_.at_outer_stop()) status |= registers::kAtOuterStop;
   if (drive_.rotary_on()) status |= registers::kRotaryPowered;
+  if (world_.panel.start_pressed) status |= registers::kStartPressed;
   status |= static_cast<unsigned>(drive_.fault()) << 8;
   return {static_cast<std::uint16_t>(status),
           command_.sequence,

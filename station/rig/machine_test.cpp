@@ -102,6 +102,21 @@ TEST(Machine, LeavesTheEmergencyStopOnlyToAPerson) {
   EXPECT_GT(machine.reading().v_m_s, 0.09);
 }
 
+TEST(Machine, ShowsTheStartButtonAndMovesNothingForIt) {
+  Machine machine{quiet()};
+  World world;
+  world.panel.start_pressed = true;
+  machine.set_world(world);
+  run(machine, kOff, 20);
+  EXPECT_TRUE(machine.reading().status & registers::kStartPressed);
+  EXPECT_FALSE(machine.reading().status & registers::kEnabled);
+  EXPECT_EQ(machine.reading().v_m_s, 0.0);
+  world.panel.start_pressed = false;
+  machine.set_world(world);
+  run(machine, kOff, 1);
+  EXPECT_FALSE(machine.reading().status & registers::kStartPressed);
+}
+
 TEST(Machine, IsNotResetWhileTheEmergencyStopIsPressed) {
   Machine machine{quiet()};
   World world;

@@ -174,6 +174,11 @@ void PalpationRig::after_tick() {
   if (counts.samples % kDrainEveryTicks == 0) recorder_->drain();
 }
 
+void PalpationRig::pause(bool on) noexcept {
+  limiter_.pause(on);
+  if (made_.trainee) made_.trainee->rest(on);
+}
+
 TrialSnapshot PalpationRig::latest(const trial::Header& header) const {
   const auto seen = live_.read().value_or(loop::Live{});
   const double share = static_cast<double>(seen.tick) / (setup_.duration_s * setup_.rate_Hz);

@@ -48,6 +48,7 @@ class PalpationRig final : public Rig {
   void run() noexcept override;
   void stop() noexcept override { loop_->stop(); }
   void cap_force(double force_N) noexcept override { limiter_.cap_force(force_N); }
+  void pause(bool on) noexcept override;
   TrialSnapshot latest(const trial::Header& header) const override;
   const loop::PeriodicLoop& periods() const override { return loop_->periods(); }
   Ended settle() override;

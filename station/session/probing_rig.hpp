@@ -50,6 +50,7 @@ class ProbingRig final : public Rig {
   void run() noexcept override;
   void stop() noexcept override { loop_->stop(); }
   void cap_force(double force_N) noexcept override { guard_->cap_push(force_N); }
+  void pause(bool on) noexcept override { guard_->pause(on); }
   TrialSnapshot latest(const trial::Header& header) const override;
   const loop::PeriodicLoop& periods() const override { return loop_->periods(); }
   Ended settle() override;

@@ -1,5 +1,5 @@
-/// What a supervisor may change in a running trial over the network: stop it, or lower the force
-/// limit. The force limit is never raised.
+/// What others than the loop may change in a running trial: a supervisor over the network stops it
+/// or lowers the force limit, which is never raised; the trainee pauses it.
 #pragma once
 
 #include <atomic>
@@ -7,6 +7,7 @@
 #include <string>
 
 #include "station/loop/decreasing_limit.hpp"
+#include "station/loop/pause.hpp"
 
 namespace tractus::session {
 
@@ -39,11 +40,16 @@ class RemoteSupervisor {
   /// Infinite: nobody lowered it.
   double force_N() const noexcept { return force_N_.value(); }
 
+  /// No force on the hand, and no time of the trial passes, until the trainee goes on.
+  void pause(bool on) noexcept { pause_.set(on); }
+  bool paused() const noexcept { return pause_.on(); }
+
  private:
   mutable std::mutex mutex_;  ///< guards reason_
   std::string reason_;
   std::atomic<bool> stopped_ = false;
   loop::DecreasingLimit force_N_;
+  loop::PauseSwitch pause_;
 };
 
 /// The fault of a trial that was stopped, as its file and the screen state it.

@@ -95,9 +95,11 @@ class Rig {
   virtual void arm() = 0;
   /// In the loop's thread: ticks until the hand is done, the time is up, a fault or `stop`.
   virtual void run() noexcept = 0;
-  /// From any thread, as the next two.
+  /// From any thread, as the next three.
   virtual void stop() noexcept = 0;
   virtual void cap_force(double force_N) noexcept = 0;
+  /// No force, and nothing is recorded, while it is on.
+  virtual void pause(bool on) noexcept = 0;
   virtual TrialSnapshot latest(const trial::Header& header) const = 0;
   virtual const loop::PeriodicLoop& periods() const = 0;
 

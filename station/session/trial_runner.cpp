@@ -60,6 +60,23 @@ void TrialRunner::apply_remote_commands() {
   if (!terms_.outside) return;
   rig_->cap_force(terms_.outside->force_N());
   if (terms_.outside->stopped()) rig_->stop();
+  follow_pause(terms_.outside->paused());
+}
+
+// A pause has no time in the trial: its event stands where the samples go on.
+void TrialRunner::follow_pause(bool on) {
+  if (on == paused_since_.has_value()) return;
+  rig_->pause(on);
+  const core::Instant_ns now = time_.loop().now();
+  if (on) {
+    paused_since_ = now;
+    return;
+  }
+  const core::Instant_ns lasted = now - *paused_since_;
+  paused_ns_ += lasted;
+  pauses_.push_back(
+      {rig_->latest(header_).t_s, "paused", {{"lasted_s", static_cast<double>(lasted) * 1e-9}}});
+  paused_since_.reset();
 }
 
 void TrialRunner::watch_until_end(const loop::LoopThread& thread, const Watch& watch) {
@@ -82,8 +99,11 @@ core::Result<void> TrialRunner::run(const Watch& watch) {
   thread.go();
   watch_until_end(thread, watch);
   thread.join();
+  follow_pause(false);  // a trial may end in a pause
   settle();
-  return recorder.stop();
+  TRY(recorder.stop());
+  for (const trial::Event& event : pauses_) TRY(recorder.append(event));
+  return {};
 }
 
 // The last reason that holds is the fault.
@@ -97,7 +117,7 @@ void TrialRunner::settle() {
 }
 
 double TrialRunner::elapsed_s() {
-  return static_cast<double>(time_.loop().now() - rig_->periods().started()) * 1e-9;
+  return static_cast<double>(time_.loop().now() - rig_->periods().started() - paused_ns_) * 1e-9;
 }
 
 core::Result<void> TrialRunner::note(trial::EventKind kind, const core::Json& detail) {

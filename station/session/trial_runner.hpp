@@ -1,4 +1,4 @@
-/// One attempt, on either rig: file, thread, onlooker, stop from afar, end.
+/// One attempt, on either rig: file, thread, onlooker, stop from afar, pauses, end.
 #pragma once
 
 #include <memory>
@@ -35,6 +35,7 @@ class TrialRunner {
   core::Result<void> make_file();
   void watch_until_end(const loop::LoopThread& thread, const Watch& watch);
   void apply_remote_commands();
+  void follow_pause(bool on);
   void settle();
   double elapsed_s();
   TrialReport report_of(const std::optional<trial::Answer>& answer);
@@ -47,6 +48,9 @@ class TrialRunner {
   std::unique_ptr<Rig> rig_;  ///< after what it uses
   loop::RealtimeGrant grant_;
   std::string fault_;
+  std::optional<core::Instant_ns> paused_since_;
+  core::Instant_ns paused_ns_ = 0;  ///< of the pauses that are over
+  std::vector<trial::Event> pauses_;
 };
 
 /// A trial, and the rig that its runner owns.

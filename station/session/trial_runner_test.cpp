@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 #include <stdlib.h>
 
+#include <algorithm>
+
 #include "core/bytes.hpp"
 
 namespace tractus {
@@ -17,6 +19,7 @@ class FakeRig final : public Rig {
     std::vector<std::string> calls;
     Ended ended;
     double cap_N = 0.0;
+    std::vector<bool> pauses;
     int ticks = 150;
     int lost = 0;
   };
@@ -56,6 +59,7 @@ class FakeRig final : public Rig {
   }
   void stop() noexcept override { periods_->stop(); }
   void cap_force(double force_N) noexcept override { told_.cap_N = force_N; }
+  void pause(bool on) noexcept override { told_.pauses.push_back(on); }
   TrialSnapshot latest(const trial::Header& header) const override { return {.header = header}; }
   const loop::PeriodicLoop& periods() const override { return *periods_; }
   Ended settle() override {
@@ -157,6 +161,24 @@ TEST_F(TrialRunners, EndsWhenTheWatchSaysSo) {
   terms_.duration_s = 3600.0;
   const TrialReport report = done([](const TrialSnapshot&) { return false; });
   EXPECT_LT(report.counts.samples, 1'000'000'000u);
+}
+
+TEST_F(TrialRunners, APauseIsHandedOnOnceAndStandsInTheFileWithItsLength) {
+  RemoteSupervisor outside;
+  terms_.outside = &outside;
+  terms_.speed = Speed::real;  // 150 ticks of 10 ms
+  int seen = 0;
+  const TrialReport report = done([&](const TrialSnapshot&) {
+    ++seen;
+    outside.pause(seen >= 5 && seen < 15);
+    return true;
+  });
+  EXPECT_EQ(told_.pauses, (std::vector<bool>{true, false}));
+  const auto read = trial::read_trial(report.file);
+  const auto pause = std::ranges::find(read->events, "paused", &trial::Event::kind);
+  ASSERT_NE(pause, read->events.end());
+  // Ten looks, 30 ms apart; a busy machine makes them longer, never shorter.
+  EXPECT_GE(pause->detail.at("lasted_s").get<double>(), 0.25);
 }
 
 TEST_F(TrialRunners, RefusesTermsThatNoTrialCanHave) {

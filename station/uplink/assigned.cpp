@@ -32,6 +32,12 @@ core::Result<wire::AssignedWork> next_trial(Server& server, const Ticket& ticket
   return wire::AssignedWork::from_json(json, "the server's trial: ");
 }
 
+core::Result<wire::TrialResult> trial_result(Server& server, const Ticket& ticket,
+                                             const std::string& trial_id) {
+  auto json = TRY(asked(server, "result", {{"ticket", ticket.text}, {"trial", trial_id}}));
+  return wire::TrialResult::from_json(json, "the server's result: ");
+}
+
 void sign_out(Server& server, const Ticket& ticket) {
   [[maybe_unused]] const auto said = asked(server, "sign-out", {{"ticket", ticket.text}});
 }

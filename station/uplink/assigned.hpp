@@ -3,6 +3,7 @@
 
 #include "station/uplink/server.hpp"
 #include "wire/assigned_work.hpp"
+#include "wire/trial_result.hpp"
 
 namespace tractus::uplink {
 
@@ -15,6 +16,9 @@ core::Result<Ticket> sign_in(Server& server, const std::string& badge, const std
 /// Exactly the next trial; the same until it was handed over. Errors: conflict when another station
 /// holds it (the server's own words).
 core::Result<wire::AssignedWork> next_trial(Server& server, const Ticket& ticket);
+/// As far as the trainee may see it now.
+core::Result<wire::TrialResult> trial_result(Server& server, const Ticket& ticket,
+                                             const std::string& trial_id);
 /// What cannot be said now ends by itself.
 void sign_out(Server& server, const Ticket& ticket);
 

@@ -77,7 +77,10 @@ class SimLambda6 final : public Device, public SimulatedTrainee {
 
   Status read(core::Instant_ns now, Sample& out) noexcept override {
     if (!open_) return Status::fault;
-    if (last_ >= 0) advance(static_cast<double>(std::min(now - last_, kMaxGap_ns)) * 1e-9);
+    if (rests_)
+      velocity_.setZero(), turn_.setZero();
+    else if (last_ >= 0)
+      advance(static_cast<double>(std::min(now - last_, kMaxGap_ns)) * 1e-9);
     last_ = now;
     out = {.stamp = now,
            .X_DH = X_DH_,
@@ -107,6 +110,7 @@ class SimLambda6 final : public Device, public SimulatedTrainee {
   }
   bool done() const noexcept override { return done_; }
   double progress() const noexcept override { return progress_; }
+  void rest(bool on) noexcept override { rests_ = on; }
   SimulatedAnswer answer() const override { return felt_.answer(); }
 
  private:
@@ -211,7 +215,7 @@ class SimLambda6 final : public Device, public SimulatedTrainee {
   std::optional<double> held_m_ = {};  ///< depth at which the wall last held
   core::Instant_ns last_ = -1;
   bool open_ = false, saturated_ = false, tapping_ = false, rechecking_ = false;
-  std::atomic<bool> done_ = false;
+  std::atomic<bool> done_ = false, rests_ = false;
   std::atomic<double> progress_ = 0.0;
 };
 

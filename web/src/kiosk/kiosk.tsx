@@ -3,7 +3,7 @@ import { Badge } from '@/ui';
 import { AnswerScreen } from './answer-screen';
 import { FaultScreen, LostScreen } from './fault-screens';
 import { BadgeScreen, PinScreen } from './sign-in-screens';
-import { TechnicianScreen } from './technician-screen';
+import { TechnicianScreen, TestScreen } from './technician-screen';
 import { useStation, type Send, type State } from './station';
 import { CompleteScreen, PausedScreen, ResultScreen, RunningScreen, WaitScreen, WorkScreen } from './work-screens';
 import styles from './kiosk.module.css';
@@ -19,11 +19,11 @@ function Screen({ state, send }: { readonly state: State; readonly send: Send })
     case 'technician':
       return <TechnicianScreen {...state} send={send} />;
     case 'testing':
-      return <WaitScreen text="Self-test" />;
+      return <TestScreen text={state.test?.text ?? ''} waits={state.test?.waits ?? false} send={send} />;
     case 'checking':
       return <WaitScreen text="Checking badge and PIN" />;
     case 'work':
-      return state.work ? <WorkScreen work={state.work} send={send} /> : null;
+      return state.work ? <WorkScreen work={state.work} button={state.button} send={send} /> : null;
     case 'preparing':
       return <WaitScreen text="Getting ready" />;
     case 'running':
@@ -35,7 +35,7 @@ function Screen({ state, send }: { readonly state: State; readonly send: Send })
     case 'result':
       return state.outcome ? <ResultScreen outcome={state.outcome} send={send} /> : null;
     case 'paused':
-      return <PausedScreen send={send} />;
+      return <PausedScreen inTrial={state.in_trial} send={send} />;
     case 'complete':
       return <CompleteScreen send={send} />;
     case 'fault':

@@ -40,6 +40,29 @@ export type FaultKind = (typeof kFaults)[number];
 const Finding = v.object({ name: v.string(), passed: v.boolean(), words: v.string() });
 export type Finding = v.InferOutput<typeof Finding>;
 
+const Result = v.object({
+  state: v.picklist(['held', 'assessing', 'assessed', 'failed']),
+  correct: v.nullable(v.boolean()),
+  scores: v.array(
+    v.object({
+      label: v.string(),
+      unit: v.string(),
+      shown_as: v.picklist(['number', 'share', 'correct_or_incorrect']),
+      value: v.number(),
+    }),
+  ),
+});
+export type Result = v.InferOutput<typeof Result>;
+
+const About = v.object({
+  version: v.string(),
+  station: v.string(),
+  device: v.string(),
+  limits: v.record(v.string(), v.number()),
+  lowered_force_N: v.nullable(v.number()),
+});
+export type About = v.InferOutput<typeof About>;
+
 const State = v.object({
   screen: v.picklist([
     'badge',
@@ -65,10 +88,17 @@ const State = v.object({
   work: v.optional(Work),
   live: v.optional(v.object({ t_s: v.number(), depth_m: v.nullable(v.number()), progress: v.nullable(v.number()) })),
   question: v.optional(v.object({ rig: Rig, length_m: v.number() })),
-  outcome: v.optional(v.object({ answer: v.nullable(Answer), drilled: v.boolean(), sent: v.boolean() })),
+  outcome: v.optional(
+    v.object({ answer: v.nullable(Answer), drilled: v.boolean(), sent: v.boolean(), result: v.nullable(Result) }),
+  ),
+  button: v.optional(v.boolean(), false),
+  in_trial: v.optional(v.boolean(), false),
   technician: v.optional(v.boolean(), false),
   findings: v.optional(v.array(Finding), []),
+  trials: v.optional(v.array(v.string()), []),
   log: v.optional(v.array(v.string()), []),
+  about: v.optional(About),
+  test: v.optional(v.object({ text: v.string(), waits: v.boolean() })),
   fault: v.optional(v.object({ kind: v.picklist(kFaults), what: v.string(), signed_in: v.boolean() })),
 });
 export type State = v.InferOutput<typeof State>;
@@ -88,7 +118,9 @@ export type Command =
         | 'retry'
         | 'sign_out'
         | 'technician'
-        | 'self_test';
+        | 'self_test'
+        | 'confirm'
+        | 'stop_test';
     };
 export type Send = (command: Command) => void;
 

@@ -1,25 +1,70 @@
-/** The technician's menu: a self-test, what became of the station's trials, and the commands for what is done at a terminal. */
+/** The technician's menu: a self-test, limits, version, what became of the trials, the log, and what is done at a terminal. */
 import { Badge, Button } from '@/ui';
-import type { Finding, Send } from './station';
+import { formatFigure } from '@/units';
+import type { About, Finding, Send } from './station';
 import styles from './kiosk.module.css';
 
 interface Props {
   readonly findings: readonly Finding[];
+  readonly trials: readonly string[];
   readonly log: readonly string[];
+  readonly about?: About | undefined;
   readonly notice: string;
   readonly send: Send;
 }
 
-/** What a terminal is for: each asks a person to do something with the device, or changes what a hand may feel. */
+/** What a terminal is for, and why not here. */
 const kCommands = [
-  'tractus-station self-test',
-  'tractus-station calibrate',
-  'tractus-station align',
-  'tractus-station limits',
-  'journalctl -u tractus-kiosk',
+  ['tractus-station calibrate', 'the handle looks for its zero by itself; who does it is kept with the date'],
+  ['tractus-station align', 'a fixture is touched with the tip while the headset is worn; this screen is not seen'],
+  ['tractus-station limits --restore', 'raises what was lowered from afar: a decision that is made beside the device'],
+  ['journalctl -u tractus-kiosk', 'the whole log'],
 ] as const;
 
-export function TechnicianScreen({ findings, log, notice, send }: Props) {
+/** Words and unit of each limit that a station states. */
+const kLimits: Readonly<Record<string, readonly [words: string, unit: string]>> = {
+  max_force_N: ['largest force', 'N'],
+  max_torque_Nm: ['largest torque', 'N·m'],
+  max_force_slew_N_per_s: ['fastest change of force', 'N/s'],
+  max_torque_slew_Nm_per_s: ['fastest change of torque', 'N·m/s'],
+  max_speed_m_s: ['fastest motion', 'm/s'],
+  max_turn_rad_s: ['fastest turning', 'rad/s'],
+  max_jump_m: ['largest jump between two samples', 'm'],
+  ramp_s: ['ramp after arming', 's'],
+  max_push_N: ['largest push of the hand', 'N'],
+};
+
+function Limits({ limits, lowered_force_N }: Pick<About, 'limits' | 'lowered_force_N'>) {
+  return (
+    <ul className={styles.findings} aria-label="Limits">
+      {Object.entries(limits).map(([key, value]) => {
+        const [words, unit] = kLimits[key] ?? [key, ''];
+        return (
+          <li key={key}>
+            {words}: {formatFigure(value, unit)}
+          </li>
+        );
+      })}
+      {lowered_force_N === null ? null : <li>lowered from afar to {formatFigure(lowered_force_N, 'N')}</li>}
+    </ul>
+  );
+}
+
+function Lines({ title, lines }: { readonly title: string; readonly lines: readonly string[] }) {
+  return (
+    <>
+      <h2>{title}</h2>
+      {lines.length === 0 ? <p>None yet.</p> : null}
+      <ul className={styles.lines} aria-label={title}>
+        {lines.map((line) => (
+          <li key={line}>{line}</li>
+        ))}
+      </ul>
+    </>
+  );
+}
+
+export function TechnicianScreen({ findings, trials, log, about, notice, send }: Props) {
   return (
     <section className={styles.technician}>
       <div className={styles.row}>
@@ -29,7 +74,6 @@ export function TechnicianScreen({ findings, log, notice, send }: Props) {
         </Button>
         <Button onClick={() => send({ command: 'back' })}>Back</Button>
       </div>
-      <p>The self-test here is of a simulated device. A real one is tested at a terminal.</p>
       {notice === '' ? null : <p role="alert">{notice}</p>}
       {findings.length === 0 ? null : (
         <ul className={styles.findings} aria-label="Findings">
@@ -41,15 +85,62 @@ export function TechnicianScreen({ findings, log, notice, send }: Props) {
           ))}
         </ul>
       )}
-      <h2>Trials of this station, the newest first</h2>
-      {log.length === 0 ? <p>None yet.</p> : null}
-      <ul className={styles.findings}>
-        {log.map((line) => (
-          <li key={line}>{line}</li>
-        ))}
-      </ul>
-      <h2>At a terminal, with the kiosk stopped</h2>
-      <p>{kCommands.join(' · ')}</p>
+      {about === undefined ? null : (
+        <p>
+          {about.station}, device {about.device}, version {about.version}. To update: install the new version at a
+          terminal, then systemctl restart tractus-kiosk. Trials that wait stay on the disk.
+        </p>
+      )}
+      <div className={styles.halves}>
+        <div>
+          <h2>Limits</h2>
+          {about === undefined ? null : <Limits {...about} />}
+        </div>
+        <div>
+          <h2>At a terminal, with the kiosk stopped</h2>
+          <ul className={styles.lines}>
+            {kCommands.map(([command, why]) => (
+              <li key={command}>
+                <code>{command}</code>: {why}
+              </li>
+            ))}
+          </ul>
+        </div>
+      </div>
+      <div className={styles.halves}>
+        <div>
+          <Lines title="Trials, the newest first" lines={trials} />
+        </div>
+        <div>
+          <Lines title="Log, the newest first" lines={log} />
+        </div>
+      </div>
+    </section>
+  );
+}
+
+/** A self-test: what will move and what to do, before it moves. */
+export function TestScreen({
+  text,
+  waits,
+  send,
+}: {
+  readonly text: string;
+  readonly waits: boolean;
+  readonly send: Send;
+}) {
+  return (
+    <section className={styles.centre} role="status">
+      <h1>Self-test</h1>
+      <p>{text === '' ? 'The checks run…' : text}</p>
+      {waits ? (
+        <Button look="solid" className={styles.main_button} onClick={() => send({ command: 'confirm' })}>
+          Done: go on
+        </Button>
+      ) : null}
+      <Button className={styles.wide} onClick={() => send({ command: 'stop_test' })}>
+        Stop
+      </Button>
     </section>
   );
 }

@@ -1,7 +1,7 @@
 /** From the next trial to its result. */
-import { Button, Progress } from '@/ui';
-import { formatLength, formatShare, formatTime, metre, second, share } from '@/units';
-import type { Send, State, Work } from './station';
+import { Badge, Button, Progress } from '@/ui';
+import { formatLength, formatScore, formatShare, formatTime, metre, second, share } from '@/units';
+import type { Result, Send, State, Work } from './station';
 import styles from './kiosk.module.css';
 
 type Live = NonNullable<State['live']>;
@@ -36,7 +36,16 @@ export function WaitScreen({ text }: { readonly text: string }) {
   );
 }
 
-export function WorkScreen({ work, send }: { readonly work: Work; readonly send: Send }) {
+export function WorkScreen({
+  work,
+  button,
+  send,
+}: {
+  readonly work: Work;
+  /** The device has a button that starts as well. */
+  readonly button: boolean;
+  readonly send: Send;
+}) {
   return (
     <section className={styles.columns}>
       <div className={styles.words}>
@@ -56,6 +65,7 @@ export function WorkScreen({ work, send }: { readonly work: Work; readonly send:
         <Button look="solid" className={styles.main_button} onClick={() => send({ command: 'start' })}>
           Start
         </Button>
+        {button ? <p className={styles.small}>Or press the button of the device.</p> : null}
         <Button className={styles.wide} onClick={() => send({ command: 'pause' })}>
           Pause
         </Button>
@@ -105,6 +115,9 @@ export function RunningScreen({
         <Button className={styles.main_button} onClick={() => send({ command: 'end_trial' })}>
           I am done
         </Button>
+        <Button className={styles.wide} onClick={() => send({ command: 'pause' })}>
+          Pause
+        </Button>
       </div>
     </section>
   );
@@ -117,17 +130,44 @@ function answerText({ answer, drilled }: Outcome): string {
   return `Your answer: ${said}${answer.confidence === undefined ? '' : `, ${formatShare(share(answer.confidence))} sure`}.`;
 }
 
+/** The answer and the scores as the trainee's own page shows them, as far as they are released. */
+function Scores({ result }: { readonly result: Result | null }) {
+  if (result === null || result.state === 'assessing') return <p role="status">The result is being computed…</p>;
+  if (result.state === 'held') return <p>You see the result on your own page once it is released.</p>;
+  if (result.state === 'failed') return <p>The trial could not be assessed. The faculty sees why.</p>;
+  return (
+    <>
+      {result.correct === null ? null : (
+        <p>
+          <Badge tone={result.correct ? 'good' : 'bad'}>{result.correct ? '✓ correct' : '✗ not correct'}</Badge>
+        </p>
+      )}
+      <dl className={styles.scores}>
+        {result.scores.map((score) => (
+          <div key={score.label}>
+            <dt>{score.label}</dt>
+            <dd>{formatScore(score)}</dd>
+          </div>
+        ))}
+      </dl>
+    </>
+  );
+}
+
 export function ResultScreen({ outcome, send }: { readonly outcome: Outcome; readonly send: Send }) {
   return (
     <section className={styles.columns}>
       <div className={styles.words}>
         <h1>Trial done</h1>
         <p>{answerText(outcome)}</p>
-        <p>
-          {outcome.sent
-            ? 'The server has it. You see the result on your own page once it is released.'
-            : 'The server does not answer. The trial is safe at this station and is sent later by itself.'}
-        </p>
+        {outcome.sent ? (
+          <>
+            <p>The server has it.</p>
+            {outcome.drilled ? null : <Scores result={outcome.result} />}
+          </>
+        ) : (
+          <p>The server does not answer. The trial is safe at this station and is sent later by itself.</p>
+        )}
       </div>
       <div className={styles.actions}>
         <Button look="solid" className={styles.main_button} onClick={() => send({ command: 'next' })}>
@@ -144,7 +184,27 @@ export function ResultScreen({ outcome, send }: { readonly outcome: Outcome; rea
   );
 }
 
-export function PausedScreen({ send }: { readonly send: Send }) {
+/** The trial stands still: no force, and its time does not pass. */
+function PausedTrial({ send }: { readonly send: Send }) {
+  return (
+    <section className={styles.centre}>
+      <h1>Paused</h1>
+      <p>
+        The handle is without force, and the time of the trial does not pass. Take the tip off the wall before you go
+        on: the force comes back slowly. After 15 minutes the trial ends.
+      </p>
+      <Button look="solid" className={styles.main_button} onClick={() => send({ command: 'resume' })}>
+        Go on
+      </Button>
+      <Button className={styles.wide} onClick={() => send({ command: 'end_trial' })}>
+        I am done
+      </Button>
+    </section>
+  );
+}
+
+export function PausedScreen({ inTrial, send }: { readonly inTrial: boolean; readonly send: Send }) {
+  if (inTrial) return <PausedTrial send={send} />;
   return (
     <section className={styles.centre}>
       <h1>Paused</h1>

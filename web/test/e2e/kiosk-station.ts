@@ -91,7 +91,8 @@ export function shown(bin: string, line: Line, { station }: Programme, words: st
 const kWorldUnit = 240,
   kWriteOne = 6;
 export const kStopButton = 4,
-  kResetButton = 5;
+  kResetButton = 5,
+  kStartButton = 8;
 
 export interface Rig {
   readonly address: string;

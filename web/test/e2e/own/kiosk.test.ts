@@ -8,7 +8,16 @@ import type { Browser, Page } from 'playwright-core';
 import { afterAll, afterEach, beforeAll, describe, expect, it } from 'vitest';
 import { accessibilityFaults } from '../axe';
 import { kShots, launch } from '../browser';
-import { kResetButton, kStopButton, Line, startKiosk, startRig, shown, type Kiosk } from '../kiosk-station';
+import {
+  kResetButton,
+  kStartButton,
+  kStopButton,
+  Line,
+  startKiosk,
+  startRig,
+  shown,
+  type Kiosk,
+} from '../kiosk-station';
 import { furnish, type Programme } from '../programme';
 import { programs, serveReal, type Served } from '../real-server';
 
@@ -16,9 +25,12 @@ const bin = programs('tractus', 'tractus-server', 'tractus-station', 'tractus-ri
 const kAda = '100',
   kBen = '101',
   kPin = '2580';
-const kTrial_ms = 60_000;
+const kTrial_ms = 60_000,
+  kPause_s = 3;
 
 interface Answered {
+  readonly duration_s: number;
+  readonly events: readonly { kind: string; detail: { lasted_s?: number } }[];
   readonly answer: { wall: string | null; breach: boolean; confidence: number; depth_m: number | null } | null;
 }
 interface Assigned {
@@ -81,7 +93,7 @@ describe.skipIf(bin === '')('the kiosk', () => {
       'Week 1: probing',
       ['Simulated Ben'],
       [{ scenario: { tuned: 'lateral_breach' } }],
-      3,
+      4,
     ));
   }, 240_000);
   afterEach(async () => {
@@ -95,7 +107,7 @@ describe.skipIf(bin === '')('the kiosk', () => {
   });
 
   it('takes a trainee from the badge to the result, and on through a cut network', async () => {
-    await open(['--device', 'sim-lambda6', '--duration', '5', '--seed', '7']);
+    await open(['--device', 'sim-lambda6', '--duration', '12', '--seed', '7']);
     await screen('badge');
     await look('badge');
     await page.keyboard.type(`${kAda}\n`);
@@ -112,6 +124,13 @@ describe.skipIf(bin === '')('the kiosk', () => {
     await touch('Go on');
     await touch('Start');
     await screen('running');
+    await touch('Pause');
+    await screen('paused');
+    await look('paused-trial');
+    await page.waitForTimeout(kPause_s * 1000);
+    expect(await page.locator('[data-screen="paused"]').count(), 'a paused trial does not end').toBe(1);
+    await touch('Go on');
+    await screen('running');
     await page.getByText('Depth').waitFor();
     await look('running');
     await screen('answer');
@@ -119,12 +138,19 @@ describe.skipIf(bin === '')('the kiosk', () => {
     await answer('medial');
     await screen('result');
     await page.getByText('The server has it.').waitFor();
+    await page.getByText('You see the result on your own page once it is released.').waitFor();
     await look('result');
     const first = await assigned(palpation);
     expect(first.done).toBe(1);
     const kept = await programme.admin.ask<Answered>('GET', `/trials/${first.trials[0]?.trial_id ?? ''}`);
     expect(kept.answer).toMatchObject({ breach: true, wall: 'medial', confidence: 0.75, depth_m: null });
+    const pauses = kept.events.filter(({ kind }) => kind === 'paused');
+    expect(pauses.length).toBe(1);
+    expect(pauses[0]?.detail.lasted_s).toBeGreaterThan(kPause_s);
+    // --duration 12, and the hand may lag by 2 s (kGrace_s): the pause is not in it.
+    expect(kept.duration_s).toBeLessThan(12 + 2.1);
 
+    await programme.admin.ask('POST', `/assignments/${palpation}/release`, { release: 'released' });
     await touch('Next trial');
     await screen('work');
     await touch('Start');
@@ -188,6 +214,34 @@ describe.skipIf(bin === '')('the kiosk', () => {
     const kept = await programme.admin.ask<Answered>('GET', `/trials/${trials[0]?.trial_id ?? ''}`);
     expect(kept.answer?.wall).toBe('lateral');
     expect(kept.answer?.depth_m).toBeCloseTo(0.01, 3); // a quarter of travel_m, 0.04 in shared/scenarios/tuned/lateral_breach.json
+  }, 240_000);
+
+  it('starts a trial by the button of the device, pauses it, and shows the result that is released', async () => {
+    await programme.admin.ask('POST', `/assignments/${probing}/release`, { release: 'released' });
+    const before = new Set((await assigned(probing)).trials.map(({ trial_id }) => trial_id));
+    const rig = await startRig(bin);
+    await open(['--device', 'rig', '--address', rig.address]);
+    await signIn(kBen);
+    await page.getByText('Or press the button of the device.').waitFor();
+    await look('work-button');
+    await rig.press(kStartButton, 1);
+    await screen('running');
+    await rig.press(kStartButton, 0);
+    await touch('Pause');
+    await screen('paused');
+    await touch('Go on');
+    await screen('running');
+    await touch('I am done');
+    await answer('No breach');
+    await screen('result');
+    await page.getByText('Mean force').waitFor();
+    await look('result-released');
+    const made = (await assigned(probing)).trials.find(({ trial_id }) => !before.has(trial_id));
+    const kept = await programme.admin.ask<Answered>('GET', `/trials/${made?.trial_id ?? ''}`);
+    expect(kept.events.filter(({ kind }) => kind === 'paused').length).toBe(1);
+    await touch('Sign out');
+    await screen('badge');
+    await rig.end();
   }, 240_000);
 
   it('stops for the red button and for a rig that is gone, and goes on when a person says so', async () => {
@@ -256,6 +310,8 @@ describe.skipIf(bin === '')('the kiosk', () => {
     await screen('technician_pin');
     await page.keyboard.type('8642\n');
     await screen('technician');
+    await page.getByText('largest force').waitFor();
+    await page.getByText(/version \d/).waitFor();
     await look('technician');
     await touch('Self-test');
     await screen('testing');
