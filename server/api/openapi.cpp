@@ -4,6 +4,7 @@
 #include <set>
 
 #include "effects/catalogues.hpp"
+#include "server/api/people/token_scopes.hpp"
 #include "server/api/schema.hpp"
 
 namespace tractus {
@@ -92,6 +93,12 @@ core::Json operation(const RouteInfo& route) {
         {grant.role == Role::station ? "station" : "session", core::Json::array()}};
     if (std::ranges::find(security, by) == security.end()) security.push_back(by);
   }
+  core::Json scopes = core::Json::array();
+  for (const TokenScope scope : scopes_of(route)) {
+    scopes.push_back(name(scope));
+    security.push_back({{"token", core::Json::array({name(scope)})}});
+  }
+  if (!scopes.empty()) out["x-token-scopes"] = scopes;
   out["x-roles"] = roles;
   out["x-objects"] = objects;
   out["security"] = security;
@@ -148,7 +155,13 @@ core::Json openapi(const std::vector<RouteInfo>& table) {
            {{"schemas", schemas},
             {"securitySchemes",
              {{"session", {{"type", "apiKey"}, {"in", "cookie"}, {"name", "tractus_session"}}},
-              {"station", {{"type", "http"}, {"scheme", "bearer"}}}}}}}};
+              {"station", {{"type", "http"}, {"scheme", "bearer"}}},
+              {"token",
+               {{"type", "http"},
+                {"scheme", "bearer"},
+                {"description",
+                 "Personal API token of an account, within its scopes and the account's "
+                 "role"}}}}}}}};
 }
 
 }  // namespace api

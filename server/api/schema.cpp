@@ -59,6 +59,12 @@ core::Json map(core::Json values, std::string_view meaning) {
 core::Json nullable(core::Json inner) {
   return {{"anyOf", core::Json::array({std::move(inner), core::Json{{"type", "null"}}})}};
 }
+core::Json any_of(const std::vector<core::Json>& alternatives, std::string_view meaning) {
+  return {{"anyOf", alternatives}, {"description", meaning}};
+}
+core::Json file_format(std::string_view name) {
+  return one_of({std::string(name)}, "Name and version of the file format");
+}
 core::Json optional(core::Json inner) {
   inner[kOptional] = true;
   return inner;

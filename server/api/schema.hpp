@@ -32,8 +32,11 @@ core::Json array(core::Json items, std::string_view meaning);
 core::Json tuple(core::Json items, std::size_t size, std::string_view meaning);
 core::Json map(core::Json values, std::string_view meaning);
 core::Json nullable(core::Json inner);
+core::Json any_of(const std::vector<core::Json>& alternatives, std::string_view meaning);
+/// Name and version of a file format, "tractus-case/1".
+core::Json file_format(std::string_view name);
 core::Json optional(core::Json inner);
-/// Any JSON object; its fields are described elsewhere.
+/// Any JSON object. Only where nobody can say which fields it has: routes_test.cpp lists every use with its reason.
 core::Json anything(std::string_view meaning);
 /// A reference to a schema that a route defines in `schemas`.
 core::Json ref(std::string_view name);

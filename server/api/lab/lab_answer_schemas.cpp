@@ -86,8 +86,7 @@ Json comparison_schema() {
 
 /// One number, or one for each component.
 Json one_or_many(std::string_view meaning) {
-  return {{"anyOf", Json::array({figure(meaning), series("the parameter's", meaning)})},
-          {"description", meaning}};
+  return any_of({figure(meaning), series("the parameter's", meaning)}, meaning);
 }
 
 Json parameters_schema() {
@@ -131,7 +130,7 @@ Json diagnosis_schema() {
                     {"recording", text("the recording to make")},
                     {"duration_s", number("s", "duration of its repetitions")},
                     {"expected_gain", nullable(number("1", "expected rise of the probability"))},
-                    {"program", anything("Motion in the format tractus-program/1")}}),
+                    {"program", ref("MotionProgram")}}),
             "recordings that were simulated, best first"))}});
   const Json base = object({{"rmse", figure("root mean square error of the supplied model")},
                             {"held_out_rmse", figure("the same on trials that were not fitted")},

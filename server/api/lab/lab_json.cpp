@@ -114,8 +114,8 @@ Parameter optional_text(std::string name, std::string meaning) {
 
 std::vector<NamedSchema> lab_model_schemas() {
   using namespace schema;
-  return {
-      {"ModelFile", anything("Model in the format tractus-model/1")},
+  std::vector<NamedSchema> out = lab_file_schemas();
+  out.push_back(
       {"ModelVersion",
        object({{"id", text("Id of the version, which never changes")},
                {"name", text("Name of the model")},
@@ -128,7 +128,8 @@ std::vector<NamedSchema> lab_model_schemas() {
                            "Id of the lab run that made the version; null for an uploaded model"))},
                {"made_utc_us",
                 integer("us", "Time of creation, in microseconds since 1970-01-01 UTC")},
-               {"made_by", text("Name of the account that created the version")}})}};
+               {"made_by", text("Name of the account that created the version")}})});
+  return out;
 }
 
 std::vector<NamedSchema> lab_run_schemas() {

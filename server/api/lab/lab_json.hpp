@@ -18,6 +18,8 @@ core::Result<core::Json> whole_run_json(const Call& call, const store::LabRun& r
 /// The user effects of a run, as the request contained them.
 core::Json own_effects(const store::LabRun& run);
 
+/// Of files: ModelFile, EffectFile, MotionProgram and what they hold.
+std::vector<NamedSchema> lab_file_schemas();
 std::vector<NamedSchema> lab_model_schemas();
 std::vector<NamedSchema> lab_run_schemas();
 /// Of what the lab answers: Comparison, Diagnosis, Fit, TractMap and what they hold.

@@ -259,8 +259,7 @@ std::vector<RouteInfo> lab_routes() {
                        "Check whether a user effect is well formed and whether its units agree",
                        "EffectCheck", check_effect),
              "EffectFile", kMaxEffect_bytes,
-             {{"EffectFile", anything("User effect in the format tractus-effect/1")},
-              {"EffectCheck",
+             {{"EffectCheck",
                object({{"ok", truth("True if the effect is valid")},
                        {"error", text("Description of the error; empty if the effect is valid")},
                        {"effect", nullable(ref("Effect"))}})}})};

@@ -282,8 +282,7 @@ RouteInfo asking(const char* tail, const char* id, const char* summary, const ch
 std::vector<RouteInfo> asking_routes() {
   using namespace schema;
   const Json model = text("Id of the model version"), set = text("Id of the measurement set");
-  const Json own = schema::optional(
-      array(anything("User effect in the format tractus-effect/1"), "User effects, at most 8"));
+  const Json own = schema::optional(array(ref("EffectFile"), "User effects, at most 8"));
   return {
       asking(
           "diagnoses", "startDiagnosis",
