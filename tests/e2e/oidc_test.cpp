@@ -46,13 +46,16 @@ class Provider {
   Provider(const Provider&) = delete;
   Provider& operator=(const Provider&) = delete;
   const std::string& issuer() const { return issuer_; }
-  void send_back_to(const std::string& address) {
-    const std::string line = address + "\n";
+  void send_back_to(const std::string& address) { say(address); }
+  /// "NAME GROUP…": the groups of a person from now on.
+  void groups(const std::string& of_whom) { say(of_whom); }
+
+ private:
+  void say(const std::string& words) {
+    const std::string line = words + "\n";
     EXPECT_EQ(::write(to_, line.data(), line.size()), ssize_t(line.size()));
     EXPECT_EQ(line_with("ready"), "ready");
   }
-
- private:
   std::string line_with(const std::string& start) {
     std::array<char, 4096> line{};
     while (std::fgets(line.data(), int(line.size()), from_)) {
@@ -170,6 +173,35 @@ TEST_P(Oidc, WhoHasNoAccountGetsNoneAndTheAdministratorSeesWhoAsked) {
   const Answer audit = client_.ask("GET", "/api/v1/audit?limit=5", admin_);
   EXPECT_EQ(audit.json()["rows"][0]["detail"]["subject"], "stranger");
   EXPECT_EQ(client_.ask("GET", "/api/v1/accounts", admin_).json()["accounts"].size(), 1u);
+}
+
+TEST_P(Oidc, GroupsOfTheProviderMakeChangeAndDisableAnAccountByTheRule) {
+  const core::Json rule{{"format", "tractus-groups/1"},
+                        {"lines",
+                         {{{"group", "pgy1"}, {"role", "trainee"}, {"level", "PGY-1"}},
+                          {{"group", "staff"}, {"role", "faculty"}}}}};
+  const Answer stated = client_.ask("POST", "/api/v1/group-rules", admin_,
+                                    core::Json{{"rule", rule}, {"reason", "a test"}}.dump());
+  ASSERT_EQ(stated.status, 200) << stated.body;
+  provider_->groups("una cooks");
+  EXPECT_EQ(end_of(sign_in("una")), base_ + "/?sign_in=unknown");
+  const auto role_in = [&](const std::string& group) {
+    provider_->groups("una " + group);
+    const auto browsed = sign_in("una");
+    EXPECT_EQ(end_of(browsed), base_ + "/") << browsed.dump();
+    const core::Json who = client_.ask("GET", "/api/v1/session", session_of(browsed)).json();
+    EXPECT_EQ(who["name"], "una");
+    return who.value("role", "");
+  };
+  EXPECT_EQ(role_in("pgy1"), "trainee");
+  EXPECT_EQ(role_in("staff"), "faculty");
+  provider_->groups("una");
+  EXPECT_EQ(end_of(sign_in("una")), base_ + "/?sign_in=unknown") << "she has left";
+  const core::Json accounts = client_.ask("GET", "/api/v1/accounts", admin_).json()["accounts"];
+  ASSERT_EQ(accounts.size(), 2u);
+  for (const core::Json& one : accounts)
+    EXPECT_EQ(one["state"], one["name"] == "una" ? "disabled" : "active");
+  EXPECT_EQ(role_in("pgy1"), "trainee") << "and comes back";
 }
 
 TEST_P(Oidc, ALinkThatEndedAnAccountSwitchedOffAndAnothersSubjectOpenNothing) {

@@ -1,5 +1,5 @@
-// A real OpenID provider for the sign-in tests: listens on a free port, prints its issuer, then reads one line from standard
-// input, the address that it may send browsers back to. Anybody may sign in there by any name: whom the server lets in is the
+// A real OpenID provider for the sign-in tests: listens on a free port, prints its issuer, then reads lines from standard input: first
+// the address that it may send browsers back to, then "NAME GROUP…", the groups of a person from then on. Anybody may sign in there by any name: whom the server lets in is the
 // server's to decide.
 import {createServer} from 'node:http';
 import {createInterface} from 'node:readline';
@@ -16,12 +16,20 @@ const signingKey = {...(await crypto.subtle.exportKey('jwk', pair.privateKey)), 
 delete signingKey.key_ops;
 delete signingKey.ext;
 
+const groups = new Map();
 let answer = (_request, response) => response.writeHead(503).end();
 const server = createServer((request, response) => answer(request, response));
 server.listen(0, '127.0.0.1', () => {
   const issuer = `http://127.0.0.1:${server.address().port}`;
   const lines = createInterface({input: process.stdin});
-  lines.once('line', (redirect) => {
+  lines.on('line', (line) => {
+    const [name, ...its] = line.split(' ');
+    if (!name.startsWith('http')) {
+      groups.set(name, its);
+      console.log('ready');
+      return;
+    }
+    const redirect = line;
     const base = new URL(redirect).origin;
     const provider = new Provider(issuer, {
       clients: [{
@@ -35,7 +43,9 @@ server.listen(0, '127.0.0.1', () => {
       features: {devInteractions: {enabled: true}, rpInitiatedLogout: {enabled: true}},
       jwks: {keys: [signingKey]},
       pkce: {required: () => true},
-      findAccount: (_context, id) => ({accountId: id, claims: () => ({sub: id})}),
+      claims: {openid: ['sub', 'name', 'groups']},
+      conformIdTokenClaims: false,
+      findAccount: (_context, id) => ({accountId: id, claims: () => ({sub: id, name: id, groups: groups.get(id) ?? []})}),
     });
     answer = provider.callback();
     console.log('ready');

@@ -166,6 +166,24 @@ Result<void> check_audience(const Json& claims, const std::string& client_id) {
   return {};
 }
 
+/// Texts of the claim "groups"; what is no list of texts gives nobody anything.
+std::vector<std::string> groups_in(const Json& claims) {
+  constexpr std::size_t kMostGroups = 1000;
+  const auto list = claims.find("groups");
+  std::vector<std::string> out;
+  if (list == claims.end() || !list->is_array() || list->size() > kMostGroups) return out;
+  for (const Json& one : *list)
+    if (one.is_string()) out.push_back(one.get<std::string>());
+  return out;
+}
+
+std::string name_in(const Json& claims) {
+  constexpr std::size_t kMaxClaim = 200;
+  std::string name = core::text_member(claims, "name");
+  if (name.empty()) name = core::text_member(claims, "preferred_username");
+  return name.size() <= kMaxClaim ? name : std::string();
+}
+
 Result<Identity> checked(const Json& claims, const Expected& expected) {
   if (core::text_member(claims, "iss") != expected.issuer)
     return refused("has another issuer (iss)");
@@ -179,7 +197,8 @@ Result<Identity> checked(const Json& claims, const Expected& expected) {
     return refused("is not valid yet (nbf)");
   if (expected.nonce.empty() || core::text_member(claims, "nonce") != expected.nonce)
     return refused("is not the answer to this sign-in");
-  Identity out{core::text_member(claims, "sub"), core::text_member(claims, "sid")};
+  Identity out{core::text_member(claims, "sub"), core::text_member(claims, "sid"), name_in(claims),
+               groups_in(claims)};
   if (out.subject.empty() || out.subject.size() > kMostSubject)
     return refused("names no person (sub)");
   return out;

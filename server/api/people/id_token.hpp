@@ -4,6 +4,7 @@
 
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "core/json.hpp"
 
@@ -18,6 +19,8 @@ struct Expected {
 struct Identity {
   std::string subject;  ///< the provider's unique and permanent identifier of the person
   std::string sid;      ///< id of the provider's session; may be empty
+  std::string name;     ///< claim name, else preferred_username; may be empty
+  std::vector<std::string> groups;  ///< claim groups; empty if there is none
 };
 
 /// Largest allowed difference of the clocks.

@@ -1,10 +1,11 @@
 /// Signing in by a provider of identities. Whom it vouches for gets no account by that: an
-/// administrator says which one is whose.
+/// administrator says which one is whose, or writes a rule of the provider's groups.
 #include "core/try.hpp"
 #include "db/store/operations/audit.hpp"
 #include "db/store/people/subjects.hpp"
 #include "server/api/backend.hpp"
 #include "server/api/people/authentication.hpp"
+#include "server/api/people/group_admission.hpp"
 #include "server/api/people/oidc.hpp"
 #include "server/api/people/people_json.hpp"
 #include "server/api/schema.hpp"
@@ -99,9 +100,30 @@ void note_unknown(const Call& call, const std::string& subject) {
   if (!noted && call.backend.log) call.backend.log({{"what", "refusal not noted"}});
 }
 
+/// What the administrators' rule says of this person is done before anybody is let in.
+Result<void> apply_groups(const Call& call, const Oidc& oidc, const Identity& identity) {
+  const auto rule =
+      TRY(call.backend.store.read([](store::Reading& tx) { return current_group_rule(tx); }));
+  if (!rule) return {};
+  const std::int64_t now = call.backend.now_utc_us();
+  const store::AuditScope acting(
+      {.who = identity.name.empty() ? "a person of the provider" : identity.name,
+       .role = "",
+       .peer = call.request.peer,
+       .what = "admitByGroups",
+       .detail = Json{{"subject", identity.subject}, {"groups", identity.groups}}.dump(
+           -1, ' ', false, Json::error_handler_t::replace),
+       .at_utc_us = now});
+  return call.backend.store.write([&](store::Writing& tx) {
+    return admit_by_groups(tx, {oidc.settings().issuer, identity, now});
+  });
+}
+
 /// Starts a session and returns its token. Errors: unauthorised if no active account has the
 /// subject.
-Result<std::string> session_for(const Call& call, const Oidc& oidc, const std::string& subject) {
+Result<std::string> session_for(const Call& call, const Oidc& oidc, const Identity& identity) {
+  const std::string& subject = identity.subject;
+  TRY(apply_groups(call, oidc, identity));
   auto account = TRY(call.backend.store.read([&](store::Reading& tx) {
     return store::account_of_subject(tx, oidc.settings().issuer, subject);
   }));
@@ -132,7 +154,7 @@ Result<std::string> signed_in(const Call& call, const Oidc& oidc) {
   const auto attempt = TRY(attempt_of(call));
   const auto identity =
       TRY(oidc.redeemed(call.text("code"), attempt, call.backend.now_utc_us() / 1'000'000));
-  return session_for(call, oidc, identity.subject);
+  return session_for(call, oidc, identity);
 }
 
 /// Redirects the browser to the web pages in any case; they show what happened.

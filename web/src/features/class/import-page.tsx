@@ -141,7 +141,7 @@ export function ImportPage() {
               />
             ) : null}
             <Field
-              label="Level, where a row names none (optional)"
+              label="Level for rows without one (optional)"
               value={level}
               maxLength={64}
               placeholder="PGY-1"

@@ -4,6 +4,7 @@ import type { Feature } from '@/ui';
 
 const index = () => import('./index');
 const ChangePage = lazy(() => index().then(({ ChangePage: page }) => ({ default: page })));
+const GroupsPage = lazy(() => index().then(({ GroupsPage: page }) => ({ default: page })));
 const ImportPage = lazy(() => index().then(({ ImportPage: page }) => ({ default: page })));
 
 export const feature: Feature = {
@@ -11,5 +12,6 @@ export const feature: Feature = {
   pages: [
     { path: '/class', show: () => <ImportPage /> },
     { path: '/class/change', show: () => <ChangePage /> },
+    { path: '/class/groups', show: () => <GroupsPage /> },
   ],
 };
