@@ -14,6 +14,7 @@ import tempfile
 import time
 from pathlib import Path
 
+import api_tokens
 import flood
 import insiders
 import nesting
@@ -26,7 +27,7 @@ from trial_file import announced
 from wire import Client
 from world import Setup, World
 
-ORDER = [module.__name__ for module in (nesting, relations, sign_in, insiders, storage, transport, flood)]
+ORDER = [module.__name__ for module in (nesting, relations, sign_in, api_tokens, insiders, storage, transport, flood)]
 
 
 def warm_up(world):

@@ -6,6 +6,7 @@
 
 #include "core/try.hpp"
 #include "db/store/operations/coverage.hpp"
+#include "db/store/people/erasure.hpp"
 
 namespace tractus {
 namespace store {
@@ -110,6 +111,8 @@ core::Result<Findings> look_over(Store& store, const Objects& objects, const Aud
   auto entries = TRY(store.read([&](Reading& tx) -> core::Result<std::vector<ObjectEntry>> {
     TRY(store.shared() ? read_everything(tx, found) : check_sqlite(tx, found));
     TRY(check_audit(tx, key, anchors, found));
+    const auto left = TRY(erasure_findings(tx, objects));
+    found.lines.insert(found.lines.end(), left.begin(), left.end());
     return all_objects(tx);
   }));
   for (const ObjectEntry& entry : entries) {

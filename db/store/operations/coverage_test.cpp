@@ -22,6 +22,16 @@ constexpr const char* kRows[] = {
     "'active', 'p', '4711', 'pin', 'secret', 1, 0, 'PGY-2')",
     "insert into oidc_subjects (issuer, subject, account_id, linked_utc_us, linked_by) values "
     "('i', 's', 'a', 1, 'ada')",
+    "insert into api_tokens (id, account_id, name, token_hash, scopes, made_utc_us, "
+    "expires_utc_us, revoked_utc_us, revoked_by) values ('z', 'a', 'script', 'h', 'trials:read', "
+    "1, 2, 1, 'ada')",
+    "insert into notification_addresses (account_id, address) values ('a', 'a@example.org')",
+    "insert into webhooks (id, url, kinds, secret, made_utc_us, made_by) values ('w', "
+    "'https://example.org/', 'due', 's', 1, 'ada')",
+    "insert into group_rules (version, definition, reason, made_utc_us, made_by) values (1, '{}', "
+    "'r', 1, 'ada')",
+    "insert into group_accounts (account_id, version, seen_utc_us, left_utc_us) values ('a', 1, 2, "
+    "3)",
     "insert into stations (id, name, token_hash, enrolled_utc_us, revoked_utc_us) values ('s', "
     "'station', 't', 1, 2)",
     "insert into cohorts (id, name, made_utc_us, made_by) values ('c', 'year 1', 1, 'ada')",
@@ -74,6 +84,11 @@ constexpr const char* kRows[] = {
     "('q', 1, 'year 1', '{}', 'why', 1, 'ada')",
     "insert into curriculum_steps (study_id, curriculum_id, version, step_id) values ('y', 'q', 1, "
     "'s1')",
+    "insert into erasures (number, account_id, mode, cause, state, name, badge, begun_utc_us, "
+    "done_utc_us) values (1, 'a', 'erase', 'asked', 'done', '', '', 1, 2)",
+    "insert into redactions (number, digest) values (1, 'd')",
+    "insert into retention_rules (version, definition, reason, made_utc_us, made_by) values (1, "
+    "'{}', 'why', 1, 'ada')",
     "insert into analysis_plans (id, title, study, plan, data_seen, trials_then, made_utc_us, "
     "made_by) values ('n', 'plan', 'y', 'o', 0, 0, 1, 'ada')"};
 
@@ -147,7 +162,8 @@ TEST_P(Coverage, WhatTheServerWroteIsAsTheTrailHasIt) { EXPECT_TRUE(findings().e
 
 TEST_P(Coverage, EveryColumnOfACoveredTableIsCoveredOrLeftOutOnPurpose) {
   // The last one-time code's step changes with every sign-in.
-  const std::vector<std::string> left_out{"accounts.totp_step"};
+  // Name and badge stand only until the person is taken out of the trail.
+  const std::vector<std::string> left_out{"accounts.totp_step", "erasures.name", "erasures.badge"};
   const auto tables = store_.read([](Reading& tx) { return tx.tables(); });
   ASSERT_TRUE(tables);
   for (const CoveredTable& covered : covered_tables()) {

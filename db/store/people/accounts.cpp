@@ -133,7 +133,8 @@ const ListShape& account_list() {
 }
 
 core::Result<FoundAccounts> find_accounts(Reading& tx, const ListRequest& request) {
-  auto found = TRY(find_keys(tx, account_list(), request));
+  const std::string known = " and not exists (select 1 from erasures e where e.account_id = a.id)";
+  auto found = TRY(find_keys(tx, account_list(), request, {.sql = known, .walked = known}));
   const SqlPart select{std::string("select ") + kAccount + " from accounts a where a.id in"};
   auto accounts = TRY(all_of(rows_of_keys(tx, select, found.keys), account_from));
   return FoundAccounts{std::move(accounts), std::move(found.page)};

@@ -22,6 +22,8 @@ std::string text_of(Secret secret) {
       return "enrolment_code";
     case Secret::own_password:
       return "own_password";
+    case Secret::api_token:
+      return "api_token";
   }
   return "";
 }

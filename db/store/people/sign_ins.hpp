@@ -8,7 +8,7 @@ namespace tractus::store {
 
 /// The kind of secret that an attempt contains. Each kind has separate names: an account "102" is
 /// not badge 102.
-enum class Secret { account_password, badge_pin, enrolment_code, own_password };
+enum class Secret { account_password, badge_pin, enrolment_code, own_password, api_token };
 
 /// One sign-in attempt.
 struct Attempt {

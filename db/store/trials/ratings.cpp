@@ -179,6 +179,13 @@ core::Result<std::map<std::string, std::map<std::string, double>>> rating_scores
   return out;
 }
 
+core::Result<std::set<std::string>> trials_with_hidden_name(Reading& tx) {
+  const auto rows = TRY(tx.query("select t.id from trials t where " + name_hidden_sql()));
+  std::set<std::string> out;
+  for (const Row& row : rows) out.insert(row.text(0));
+  return out;
+}
+
 std::string name_hidden_sql() {
   return std::string(
              "exists (select 1 from rating_requests q where q.trial_id = t.id and q.blind = 1 and "

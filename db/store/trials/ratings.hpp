@@ -6,6 +6,8 @@
 #pragma once
 
 #include <map>
+#include <set>
+#include <string>
 #include <vector>
 
 #include "db/store/store.hpp"
@@ -71,6 +73,8 @@ core::Result<std::vector<Rating>> ratings_of(Reading& tx, const std::string& tri
 core::Result<std::map<std::string, std::map<std::string, double>>> rating_scores(Reading& tx);
 inline constexpr std::string_view kRatingScore = "rating.";
 
+/// Trials whose trainee's name is hidden from those who rate.
+core::Result<std::set<std::string>> trials_with_hidden_name(Reading& tx);
 /// SQL, true of a row `t` of `trials` whose trainee's name is hidden from those who rate.
 std::string name_hidden_sql();
 

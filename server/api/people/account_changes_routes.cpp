@@ -2,10 +2,12 @@
 #include <fmt/format.h>
 
 #include "core/try.hpp"
+#include "db/store/people/erasure.hpp"
 #include "server/api/backend.hpp"
 #include "server/api/people/authentication.hpp"
 #include "server/api/people/people_json.hpp"
 #include "server/api/people/throttle.hpp"
+#include "server/api/people/token_scopes.hpp"
 #include "server/api/schema.hpp"
 #include "server/api/studies/assignment_plan.hpp"
 
@@ -99,12 +101,17 @@ Result<void> set_secrets(store::Writing& tx, const AccountChange& change, store:
 Result<store::Account> change_one(store::Writing& tx, const Call& call, const Changes& changes,
                                   const AccountChange& change) {
   auto found = TRY(store::account_of(tx, change.id));
-  if (!found) return Error{Errc::not_found, "no account " + change.id.substr(0, 32)};
+  if (!found || TRY(store::is_erased(tx, change.id)))
+    return Error{Errc::not_found, "no account " + change.id.substr(0, 32)};
   TRY(check_own(call, changes, found->id));
   const bool loses_admin =
       changes.role && found->role == Role::admin && *changes.role != Role::admin;
   if (loses_admin) TRY(check_an_admin_stays(tx, *found));
-  if (changes.role) found->role = *changes.role;
+  if (changes.role) {
+    found->role = *changes.role;
+    TRY(store::limit_api_tokens_of(tx, found->id, scopes_for(found->role), token_end_of(call)));
+  }
+  if (changes.new_passwords) TRY(store::revoke_api_tokens_of(tx, found->id, token_end_of(call)));
   if (changes.level) found->level = *changes.level;
   TRY(set_secrets(tx, change, *found));
   const auto set = store::set_account(tx, *found);

@@ -7,6 +7,7 @@
 #include "server/api/people/authentication.hpp"
 #include "server/api/people/people_json.hpp"
 #include "server/api/people/throttle.hpp"
+#include "server/api/people/token_scopes.hpp"
 #include "server/api/schema.hpp"
 
 namespace tractus {
@@ -106,7 +107,8 @@ Result<http::Response> set_state(const Call& call) {
     if (state == AccountState::disabled && account.role == Role::admin)
       TRY(check_an_admin_stays(tx, account));
     account.state = state;
-    return {};
+    if (state == AccountState::active) return {};
+    return store::revoke_api_tokens_of(tx, account.id, token_end_of(call));
   });
 }
 
@@ -118,7 +120,7 @@ Result<http::Response> set_role(const Call& call) {
   return changed(call, [&](store::Writing& tx, store::Account& account) -> Result<void> {
     if (account.role == Role::admin && role != Role::admin) TRY(check_an_admin_stays(tx, account));
     account.role = role;
-    return {};
+    return store::limit_api_tokens_of(tx, account.id, scopes_for(role), token_end_of(call));
   });
 }
 
@@ -130,7 +132,8 @@ Result<http::Response> reset_password(const Call& call) {
         "this is your own account: change its password with POST /api/v1/session/password"};
   const std::string password = made_password();
   auto hash = TRY(password_hash(password));
-  TRY(changed(call, [&](store::Writing& tx, store::Account& account) {
+  TRY(changed(call, [&](store::Writing& tx, store::Account& account) -> Result<void> {
+    TRY(store::revoke_api_tokens_of(tx, account.id, token_end_of(call)));
     account.password_hash = hash;
     account.must_change = true;
     account.totp_secret.clear();
@@ -227,7 +230,7 @@ std::vector<RouteInfo> accounts_routes() {
   RouteInfo reset = account_route(
       "/{id}/password", "resetPassword",
       "Set a new generated password for another person's account; this ends the account's "
-      "sessions, turns its one-time codes off and clears its failed attempts",
+      "sessions and API tokens, turns its one-time codes off and clears its failed attempts",
       "PasswordMade", reset_password);
   reset.lane = http::Lane::hashing;
   reset.schemas = {{"PasswordMade",

@@ -4,6 +4,7 @@
 
 #include "core/try.hpp"
 #include "db/store/operations/audit.hpp"
+#include "db/store/people/api_tokens.hpp"
 #include "server/api/backend.hpp"
 #include "server/api/people/throttle.hpp"
 #include "server/api/people/totp.hpp"
@@ -15,6 +16,7 @@ namespace {
 
 constexpr std::int64_t kTouch_us = 60ll * 1'000'000;
 constexpr const char* kCodeNeeded = "a one-time code is required";
+constexpr const char* kTooManyTokens = "too many unknown API tokens came from this network";
 
 bool matches(const std::string& hash, const std::string& password) {
   return crypto_pwhash_str_verify(hash.c_str(), password.data(), password.size()) == 0;
@@ -31,7 +33,57 @@ const std::string& nobodys_hash() {
   return hash;
 }
 
-core::Result<Caller> by_token(Backend& backend, std::string_view token) {
+/// An unknown token is a guess; the throttle counts it against the network that it came from.
+core::Result<Caller> refused_api_token(Backend& backend, const std::string& peer) {
+  const store::Attempt attempt{store::Secret::api_token, "", network_of(peer)};
+  const auto early = TRY(too_early(backend, attempt));
+  if (early) return core::Error{core::Errc::unauthorised, kTooManyTokens};
+  TRY(note_failure(backend, attempt));
+  return core::Error{core::Errc::unauthorised, "this API token is unknown"};
+}
+
+struct TokenHolder {
+  store::ApiToken token;
+  store::Account account;
+};
+
+core::Result<std::optional<TokenHolder>> holder_of(Backend& backend, std::string_view token) {
+  using Found = std::optional<TokenHolder>;
+  return backend.store.read([&](store::Reading& tx) -> core::Result<Found> {
+    auto found = TRY(store::api_token_with(tx, token_hash(token)));
+    if (!found) return Found();
+    auto account = TRY(store::account_of(tx, found->account_id));
+    core::require(account.has_value(), "an API token has an account");
+    return Found(TokenHolder{std::move(*found), std::move(*account)});
+  });
+}
+
+core::Result<Caller> by_api_token(Backend& backend, std::string_view text,
+                                  const std::string& peer) {
+  auto holder = TRY(holder_of(backend, text));
+  if (!holder) return refused_api_token(backend, peer);
+  const auto& [token, account] = *holder;
+  const std::int64_t now = backend.now_utc_us();
+  if (!store::is_valid(token, now))
+    return core::Error{core::Errc::unauthorised,
+                       token.revoked_utc_us ? "this API token was revoked: make a new one"
+                                            : "this API token has expired: make a new one"};
+  if (account.role == Role::station || account.state != store::AccountState::active)
+    return core::Error{core::Errc::unauthorised, "the account is disabled"};
+  if (now - token.used_utc_us.value_or(0) > kTouch_us) {
+    TRY(backend.store.write_beside(
+        [&](store::Writing& tx) { return store::note_api_token_use(tx, token.id, now); }));
+  }
+  return Caller{.role = account.role,
+                .id = account.id,
+                .name = account.name,
+                .session_hash = {},
+                .must_change = account.must_change,
+                .token = TokenUse{token.id, token.scopes}};
+}
+
+core::Result<Caller> by_token(Backend& backend, std::string_view token, const std::string& peer) {
+  if (token.starts_with(kApiTokenPrefix)) return by_api_token(backend, token, peer);
   auto station = TRY(backend.store.read(
       [&](store::Reading& tx) { return store::station_of(tx, token_hash(token)); }));
   if (!station) return core::Error{core::Errc::unauthorised, "this token is unknown"};
@@ -82,6 +134,10 @@ core::Result<void> use_code(Backend& backend, store::Account& account, const std
 
 bool needs_code(const core::Error& error) {
   return error.code == core::Errc::unauthorised && error.what == kCodeNeeded;
+}
+
+bool is_throttled(const core::Error& error) {
+  return error.code == core::Errc::unauthorised && error.what == kTooManyTokens;
 }
 
 core::Result<std::string> password_hash(const std::string& password) {
@@ -147,10 +203,14 @@ core::Result<Caller> authenticate(Backend& backend, const http::RequestHead& hea
                                   Presence presence) {
   constexpr std::string_view kBearer = "Bearer ";
   const std::string_view authorization = head.header("authorization");
-  if (authorization.starts_with(kBearer))
-    return by_token(backend, authorization.substr(kBearer.size()));
-  if (const std::string_view cookie = head.cookie(kSessionCookie); !cookie.empty())
-    return by_cookie(backend, cookie, presence);
+  const std::string_view cookie = head.cookie(kSessionCookie);
+  if (authorization.starts_with(kBearer)) {
+    if (!cookie.empty())
+      return core::Error{core::Errc::bad_input,
+                         "the request has a token and a session cookie: send one of them"};
+    return by_token(backend, authorization.substr(kBearer.size()), head.peer);
+  }
+  if (!cookie.empty()) return by_cookie(backend, cookie, presence);
   return core::Error{core::Errc::unauthorised, "sign in first"};
 }
 

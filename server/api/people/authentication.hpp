@@ -9,6 +9,7 @@
 namespace tractus::api {
 
 inline constexpr const char* kSessionCookie = "tractus_session";
+inline constexpr const char* kApiTokenPrefix = "tractus_";
 inline constexpr std::int64_t kSessionIdle_us = 2ll * 3600 * 1'000'000;
 inline constexpr std::int64_t kSessionAge_us = 24ll * 3600 * 1'000'000;
 inline constexpr std::size_t kMaxName = 128, kMaxPassword = 1024;
@@ -52,9 +53,15 @@ void close_conversations(Backend& backend, const std::string& account_id);
 
 /// Whether a request shows that a person is active. Periodic requests of a page do not.
 enum class Presence { shown, not_shown };
-/// The caller with this bearer token (a station) or this cookie (a session that is not expired).
-/// Errors: unauthorised.
+/// The caller with this bearer token (a station, or a person's API token) or this cookie (a session
+/// that is not expired). Errors: unauthorised (see is_throttled); bad_input for a bearer token and a
+/// session's cookie together.
 core::Result<Caller> authenticate(Backend& backend, const http::RequestHead& head,
                                   Presence presence = Presence::shown);
+
+/// Whether unknown API tokens came too often from the caller's network: the answer is then 429 with
+/// Retry-After, in seconds. Valid tokens from there are served.
+bool is_throttled(const core::Error& error);
+inline constexpr int kTokenRetry_s = 20;
 
 }  // namespace tractus::api

@@ -5,6 +5,7 @@
 #include "core/try.hpp"
 #include "server/api/backend.hpp"
 #include "server/api/people/authentication.hpp"
+#include "server/api/people/owner_proof.hpp"
 #include "server/api/people/people_json.hpp"
 #include "server/api/people/throttle.hpp"
 #include "server/api/people/totp.hpp"
@@ -22,34 +23,9 @@ constexpr std::uint64_t kMaxOwnAccount_bytes = 8192;
 constexpr const char* kCodesAreOn = "one-time codes are already on: turn them off first";
 constexpr std::size_t kTotpKey_bytes = 20;  // RFC 4226 section 4, R6: as long as SHA-1's output
 
-Result<store::Account> own_account(store::Reading& tx, const Call& call) {
-  auto account = TRY(store::account_of(tx, call.caller.id));
-  core::require(account.has_value(), "who is signed in has an account");
-  return std::move(*account);
-}
-
 http::Response done() { return {.status = 204, .headers = {}, .body = std::string()}; }
 
-store::Attempt own_attempt_of(const Call& call) {
-  return {store::Secret::own_password, call.caller.id, call.caller.session_hash};
-}
-
-/// Proof that the request comes from the account's owner, not from another person at an open
-/// browser.
-struct Proof {
-  const char* field;  ///< of the body, that holds the password
-  std::string password, code;
-};
-
 using Change = std::function<Result<void>(store::Writing&, store::Account&)>;
-
-/// The caller's account, if the caller's session is still valid: a password reset by an
-/// administrator ends the session.
-Result<store::Account> account_of_session(store::Writing& tx, const Call& call) {
-  auto session = TRY(store::session_of(tx, call.caller.session_hash));
-  if (!session) return Error{Errc::unauthorised, "sign in first: the session is over"};
-  return std::move(session->account);
-}
 
 /// Changes the own account in one transaction and ends its other sessions.
 Result<void> changed(const Call& call, const Change& change) {
@@ -64,14 +40,6 @@ Result<void> changed(const Call& call, const Change& change) {
   return done;
 }
 
-/// Checks the one-time code and marks it as used, within the transaction of the change.
-Result<void> take_code(const Call& call, store::Account& account, const std::string& code,
-                       bool& wrong) {
-  wrong = !use_code(call.backend, account, code);
-  if (wrong) return Error{Errc::forbidden, "body: /code: the one-time code is wrong"};
-  return {};
-}
-
 /// Runs `change`; a wrong one-time code is counted as a failed attempt.
 Result<http::Response> changed_by_code(const Call& call, const bool& wrong, const Change& change) {
   auto made = changed(call, change);
@@ -80,23 +48,8 @@ Result<http::Response> changed_by_code(const Call& call, const bool& wrong, cons
   return done();
 }
 
-/// The refusal if the password is wrong, or if a required one-time code is missing; else nothing.
-Result<std::optional<http::Response>> refusal_of(const Call& call, const Proof& proof) {
-  auto early = too_early(call.backend, own_attempt_of(call));
-  if (!early || *early) return early;
-  auto account =
-      TRY(call.backend.store.read([&](store::Reading& tx) { return own_account(tx, call); }));
-  if (!password_matches(account.password_hash, proof.password)) {
-    TRY(note_failure(call.backend, own_attempt_of(call)));
-    return Error{Errc::forbidden, std::string("body: /") + proof.field + ": the password is wrong"};
-  }
-  if (!account.totp_confirmed || !proof.code.empty()) return std::optional<http::Response>();
-  return std::optional(
-      http::error_response(403, "code_needed", "body: /code: a one-time code is required"));
-}
-
 /// Runs `change` after refusal_of() returned nothing, and marks the one-time code as used.
-Result<http::Response> changed_by_owner(const Call& call, const Proof& proof,
+Result<http::Response> changed_by_owner(const Call& call, const OwnerProof& proof,
                                         const Change& change) {
   bool wrong = false;
   return changed_by_code(call, wrong, [&](store::Writing& tx, store::Account& own) -> Result<void> {
@@ -108,7 +61,7 @@ Result<http::Response> changed_by_owner(const Call& call, const Proof& proof,
 Result<http::Response> change_password(const Call& call) {
   auto json = TRY(core::parse_json(call.request.body, "body"));
   core::Fields fields(json, "body");
-  const Proof proof{"old", fields.text("old", kMaxPassword), fields.text_or("code", "", 16)};
+  const OwnerProof proof{"old", fields.text("old", kMaxPassword), fields.text_or("code", "", 16)};
   const std::string after = password_field(fields, "new", true);
   if (proof.password == after)
     fields.wrong("new", "a password that differs from the current password is expected");
@@ -126,7 +79,7 @@ Result<http::Response> change_password(const Call& call) {
 Result<http::Response> begin_codes(const Call& call) {
   auto json = TRY(core::parse_json(call.request.body, "body"));
   core::Fields fields(json, "body");
-  const Proof proof{"password", fields.text("password", kMaxPassword), ""};
+  const OwnerProof proof{"password", fields.text("password", kMaxPassword), ""};
   TRY(fields.done());
   auto account =
       TRY(call.backend.store.read([&](store::Reading& tx) { return own_account(tx, call); }));
@@ -163,7 +116,8 @@ Result<http::Response> confirm_codes(const Call& call) {
 Result<http::Response> end_codes(const Call& call) {
   auto json = TRY(core::parse_json(call.request.body, "body"));
   core::Fields fields(json, "body");
-  const Proof proof{"password", fields.text("password", kMaxPassword), fields.text("code", 16)};
+  const OwnerProof proof{"password", fields.text("password", kMaxPassword),
+                         fields.text("code", 16)};
   TRY(fields.done());
   auto refusal = TRY(refusal_of(call, proof));
   if (refusal) return std::move(*refusal);

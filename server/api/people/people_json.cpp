@@ -4,6 +4,7 @@
 
 #include "core/bytes.hpp"
 #include "core/try.hpp"
+#include "db/store/people/erasure.hpp"
 #include "server/api/people/authentication.hpp"
 #include "server/api/schema.hpp"
 
@@ -84,7 +85,7 @@ std::string badge_field(core::Fields& fields) {
 
 core::Result<store::Account> account_of_call(store::Reading& tx, const Call& call) {
   auto account = TRY(store::account_of(tx, call.text("id")));
-  if (!account)
+  if (!account || TRY(store::is_erased(tx, account->id)))
     return core::Error{core::Errc::not_found, "no account " + call.text("id").substr(0, 32)};
   return std::move(*account);
 }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "core/try.hpp"
+#include "db/store/people/api_tokens.hpp"
 #include "db/store/studies/assignments.hpp"
 #include "db/store/trials/trials.hpp"
 #include "db/store/trials/uploads.hpp"
@@ -29,11 +30,28 @@ class PeopleTest : public ApiTest {
             .id = name, .name = name, .role = role, .password_hash = quick_hash()};
         account.pseudonym = "P-" + name;
         TRY(store::add_account(tx, account, 0));
+        constexpr auto kScopes = core::values<store::TokenScope>();
+        TRY(add_token(tx, name, {kScopes.begin(), kScopes.end()}));
       }
       TRY(furnish_cohort(tx, "c-tom", "fay", "tom"));
       return furnish_cohort(tx, "c-tia", "flo", "tia");
     });
     EXPECT_TRUE(furnished) << furnished.error().what;
+  }
+
+  /// The API token "tractus_NAME" with the id "t-NAME".
+  static core::Result<void> add_token(store::Writing& tx, const std::string& account,
+                                      std::vector<store::TokenScope> scopes) {
+    return store::add_api_token(tx,
+                                {.id = "t-" + account,
+                                 .account_id = account,
+                                 .name = "script",
+                                 .scopes = std::move(scopes),
+                                 .expires_utc_us = 2'000'000'000'000'000},
+                                token_hash("tractus_" + account));
+  }
+  static std::map<std::string, std::string> by_token(const std::string& account) {
+    return {{"authorization", "Bearer tractus_" + account}};
   }
 
   /// A cohort, its assignment "a-NAME" of one case, and the trial that its trainee did.

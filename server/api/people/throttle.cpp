@@ -56,6 +56,8 @@ Budgets budgets_of(Secret secret) {
     case Secret::enrolment_code:
     case Secret::own_password:
       return {.pair = {10, 90 * kSecond_us}};
+    case Secret::api_token:  // without names: the pair is the origin
+      return {.pair = {50, 20 * kSecond_us}};
   }
   return {.pair = {1, kForgotten_us}};
 }

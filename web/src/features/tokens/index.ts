@@ -1,0 +1,2 @@
+export { AllTokensPage } from './all-tokens-page';
+export { OwnTokensPage } from './own-tokens-page';

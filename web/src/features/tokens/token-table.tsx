@@ -1,0 +1,88 @@
+import { useMutation, useQueryClient } from '@tanstack/react-query';
+import { useState } from 'react';
+import { revokeApiToken, type ApiToken } from '@/api';
+import { AskDialog, Badge, Button, DataTable, Notice } from '@/ui';
+import { formatDate, formatDateTime } from '@/units';
+
+/** The clock of this computer, in the server's unit. */
+const now_utc_us = () => Date.now() * 1000;
+
+export function tokenState(token: ApiToken, now: number): { readonly text: string; readonly tone: 'good' | 'neutral' } {
+  if (token.revoked_utc_us !== null)
+    return { text: `revoked ${formatDate(token.revoked_utc_us)} by ${token.revoked_by ?? ''}`, tone: 'neutral' };
+  if (token.expires_utc_us <= now) return { text: `expired ${formatDate(token.expires_utc_us)}`, tone: 'neutral' };
+  return { text: `valid until ${formatDate(token.expires_utc_us)}`, tone: 'good' };
+}
+
+/** Tokens with a button that revokes one. */
+export function TokenTable({
+  tokens,
+  owners = false,
+  empty,
+}: {
+  readonly tokens: readonly ApiToken[] | undefined;
+  readonly owners?: boolean;
+  readonly empty: string;
+}) {
+  const client = useQueryClient();
+  const [asked, setAsked] = useState<ApiToken | null>(null);
+  const revoked = useMutation({
+    mutationFn: revokeApiToken,
+    onSuccess: () => client.invalidateQueries({ queryKey: ['api-tokens'] }),
+  });
+  const now = now_utc_us();
+  return (
+    <>
+      {revoked.isError ? (
+        <Notice tone="bad" title="The token was not revoked.">
+          {revoked.error.message}
+        </Notice>
+      ) : null}
+      <DataTable<ApiToken>
+        caption="API tokens"
+        order={owners ? 'by owner' : 'newest first'}
+        minWidth={720}
+        rows={tokens}
+        keyOf={({ id }) => id}
+        empty={empty}
+        columns={[
+          ...(owners ? [{ name: 'Owner', by: (one: ApiToken) => one.owner, cell: (one: ApiToken) => one.owner }] : []),
+          { name: 'Name', by: (one) => one.name, cell: (one) => one.name },
+          { name: 'Scopes', cell: (one) => one.scopes.join(', ') },
+          {
+            name: 'State',
+            by: (one) => one.expires_utc_us,
+            cell: (one) => {
+              const { text, tone } = tokenState(one, now);
+              return <Badge tone={tone}>{text}</Badge>;
+            },
+          },
+          {
+            name: 'Last use',
+            by: (one) => one.used_utc_us,
+            cell: (one) => (one.used_utc_us === null ? 'never' : formatDateTime(one.used_utc_us)),
+          },
+          {
+            name: <span className="hidden-visually">Actions</span>,
+            cell: (one) =>
+              tokenState(one, now).tone === 'good' ? (
+                <Button label={`Revoke ${one.name}`} onClick={() => setAsked(one)}>
+                  Revoke
+                </Button>
+              ) : null,
+          },
+        ]}
+      />
+      {asked ? (
+        <AskDialog
+          title={`Revoke ${asked.name}?`}
+          action="Revoke"
+          onAction={() => revoked.mutateAsync(asked.id)}
+          onClose={() => setAsked(null)}
+        >
+          <p>Programs that use this token can no longer call the server. A revoked token cannot be restored.</p>
+        </AskDialog>
+      ) : null}
+    </>
+  );
+}
