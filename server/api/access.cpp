@@ -4,6 +4,7 @@
 
 #include "core/require.hpp"
 #include "core/try.hpp"
+#include "db/store/people/api_tokens.hpp"
 #include "db/store/people/invitations.hpp"
 #include "db/store/studies/blinding.hpp"
 #include "server/api/backend.hpp"
@@ -123,6 +124,9 @@ core::Result<bool> relates(store::Reading& tx, const Caller& caller, Scope of, O
     case Object::assignment:
       return leads ? store::leads_assignment(tx, caller.id, id)
                    : store::has_assignment(tx, caller.id, id);
+    case Object::api_token:
+      if (leads) return false;
+      return store::owns_api_token(tx, caller.id, id);
     case Object::none:
       return true;  // the handler answers by Call::of
   }

@@ -50,6 +50,8 @@ std::string object_of(const RouteInfo& route, const std::string& trainee) {
       return "a-" + trainee;
     case Object::invitation:
       return trainee == "tom" ? "c-inv" : "c-tia";
+    case Object::api_token:
+      return "t-" + trainee;
     case Object::none:
       return kCase;
     default:
@@ -82,7 +84,9 @@ class Access : public PeopleTest {
     ++cells_;
     mend();
     const auto headers = role == Role::station ? station("token-1") : as(someone(role));
-    return ask(request(route.method, address(route, trainee), headers));
+    // Each role's own token; of other objects, what is tom's is also theirs who teach him.
+    const bool own = route.object == Object::api_token && trainee == "tom";
+    return ask(request(route.method, address(route, own ? someone(role) : trainee), headers));
   }
   /// What a call before changed of accounts, cohorts and invitations.
   void mend() {
@@ -186,10 +190,17 @@ TEST_F(Access, ATraineeAndAStationReachTheseRoutesAlone) {
                                                          "trialReferences of own",
                                                          "referenceWay of own",
                                                          "ownConsent",
+                                                         "ownData",
                                                          "sayConsent",
                                                          "savedViews",
                                                          "saveView",
-                                                         "removeView"}));
+                                                         "removeView",
+                                                         "ownNotifications",
+                                                         "setNotifications",
+                                                         "testNotification",
+                                                         "apiTokens",
+                                                         "makeApiToken",
+                                                         "revokeApiToken of own"}));
   EXPECT_EQ(reach[Role::station], (std::set<std::string>{"whoAmI",
                                                          "description",
                                                          "metrics",
@@ -204,6 +215,7 @@ TEST_F(Access, ATraineeAndAStationReachTheseRoutesAlone) {
                                                          "takeTrials",
                                                          "signInAtStation",
                                                          "nextTrial",
+                                                         "trialResultAtStation",
                                                          "signOutAtStation",
                                                          "serverMetrics",
                                                          "stationModels",
@@ -212,14 +224,23 @@ TEST_F(Access, ATraineeAndAStationReachTheseRoutesAlone) {
                                                          "time",
                                                          "liveStation",
                                                          "reportStation"}));
-  EXPECT_EQ(
-      reach[Role::technician],
-      (std::set<std::string>{
-          "whoAmI",        "signOut",       "changePassword", "beginCodes",  "confirmCodes",
-          "endCodes",      "description",   "metrics",        "stations",    "makeEnrolmentCode",
-          "revokeStation", "serverMetrics", "backups",        "makeBackup",  "verifyBackup",
-          "sendModel",     "recallModel",   "sentModel",      "ownConsent",  "sayConsent",
-          "station",       "live",          "stopStation",    "limitStation"}));
+  EXPECT_EQ(reach[Role::technician],
+            (std::set<std::string>{"whoAmI",           "signOut",
+                                   "changePassword",   "beginCodes",
+                                   "confirmCodes",     "endCodes",
+                                   "description",      "metrics",
+                                   "stations",         "makeEnrolmentCode",
+                                   "revokeStation",    "serverMetrics",
+                                   "backups",          "makeBackup",
+                                   "verifyBackup",     "sendModel",
+                                   "recallModel",      "sentModel",
+                                   "ownConsent",       "sayConsent",
+                                   "station",          "live",
+                                   "stopStation",      "limitStation",
+                                   "ownNotifications", "setNotifications",
+                                   "testNotification", "apiTokens",
+                                   "makeApiToken",     "revokeApiToken of own",
+                                   "ownData"}));
 }
 
 TEST_F(Access, ARouteThatNamesNobodyIsRefusedToAll) {

@@ -45,6 +45,7 @@ const std::map<std::string, std::vector<std::string>> kSecrets{
     {"enrolStation", {"code", "token_sha256"}},
     {"signInAtStation", {"pin"}},
     {"nextTrial", {"ticket"}},
+    {"trialResultAtStation", {"ticket"}},
     {"signOutAtStation", {"ticket"}},
     {"makeStudy", {"seed"}},
     {"addAssignment", {"seed"}}};

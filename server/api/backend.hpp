@@ -29,6 +29,7 @@ using TakeVolume = std::function<core::Result<core::Json>(const std::filesystem:
                                                           const std::array<std::byte, 32>& key)>;
 
 class Oidc;
+class Notifier;
 
 struct Backend {
   store::Store& store;
@@ -53,6 +54,7 @@ struct Backend {
   RefusalLimit refusals{};
   Telemetry telemetry{};
   TrialViews trial_views{};
+  Notifier* notifier = nullptr;  ///< null: nobody is told of events by e-mail or webhook
 };
 
 }  // namespace tractus::api

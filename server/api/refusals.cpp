@@ -52,6 +52,7 @@ void note_refusal(Backend& backend, const Caller& caller, const std::string& pee
   if (!unnoted) return;
   core::Json detail{{"why", why}};
   if (status > 0) detail["status"] = status;
+  if (caller.token) detail["api_token"] = caller.token->id;
   if (*unnoted > 0) detail["refusals_not_noted"] = *unnoted;
   const store::AuditedAction act{
       .who = caller.name,

@@ -116,6 +116,15 @@ class Relations : public PeopleTest {
            {{"csv", "name\nx"}, {"cohort", "$"}},
            "c-tom",
            "c-tia"}}},
+        {"setGroupRule",
+         {{"/rule/lines/*/cohorts/*",
+           "/group-rules",
+           {{"rule",
+             {{"format", "tractus-groups/1"},
+              {"lines", {{{"group", "g"}, {"role", "trainee"}, {"cohorts", {"$"}}}}}}},
+            {"reason", "r"}},
+           "c-tom",
+           "c-tia"}}},
         {"changeAccounts",
          {{"/accounts/*/id",
            "/accounts/change",
@@ -241,7 +250,7 @@ TEST_F(Relations, EveryCellOfRoutesTimesRolesTimesEndsIsAsThePolicySays) {
     }
   }
   std::printf("cells of relation routes x ends x roles x {own, stranger's}: %d\n", cells);
-  EXPECT_EQ(cells, 31 * 7 * 2);
+  EXPECT_EQ(cells, 32 * 7 * 2);
 }
 
 /// A route that is new and changes something names the other ends of what it brings together, or is
@@ -253,8 +262,13 @@ TEST_F(Relations, ARouteThatChangesSomethingNamesEveryEndOrIsOfOneObject) {
       "signIn", "signOut", "changePassword", "beginCodes", "confirmCodes", "endCodes",
       // the caller's own saved views
       "saveView", "removeView",
+      // the caller's own API tokens; an administrator revokes others'
+      "makeApiToken", "revokeApiToken",
+      // what the caller is told of, and the server's webhooks, by administrators
+      "setNotifications", "testNotification", "addWebhook", "removeWebhook", "testWebhook",
       // an account, by administrators; a badge also by those who teach its bearer
-      "addAccount", "setAccountState", "setAccountRole", "resetPassword", "setBadge", "linkSubject",
+      "eraseAccount", "addAccount", "setAccountState", "setAccountRole", "resetPassword",
+      "setBadge", "linkSubject",
       // a cohort that its maker leads
       "addCohort",
       // an assignment, and a trial that must be one of it
@@ -266,9 +280,9 @@ TEST_F(Relations, ARouteThatChangesSomethingNamesEveryEndOrIsOfOneObject) {
       "addComment", "removeComment", "setReference", "askForRating", "withdrawRatingRequest",
       "addRating",
       // a station, by itself or by those who have all stations
-      "takeTrials", "signInAtStation", "nextTrial", "signOutAtStation", "announceUpload",
-      "appendUpload", "commitUpload", "reportStation", "stationModelThere", "makeEnrolmentCode",
-      "enrolStation", "revokeStation", "stopStation", "limitStation",
+      "takeTrials", "signInAtStation", "nextTrial", "trialResultAtStation", "signOutAtStation",
+      "announceUpload", "appendUpload", "commitUpload", "reportStation", "stationModelThere",
+      "makeEnrolmentCode", "enrolStation", "revokeStation", "stopStation", "limitStation",
       // what all who may call these have all of: volumes, cases, scenarios, models, measurements,
       // rubrics
       "addVolume", "releaseVolume", "refuseVolume", "planTract", "certifyTract", "makeCase",
@@ -278,7 +292,7 @@ TEST_F(Relations, ARouteThatChangesSomethingNamesEveryEndOrIsOfOneObject) {
       // released trials alone (db/store/cohort/released.hpp)
       "lockAnalysisPlan", "analyseCohort",
       // the server's own
-      "makeBackup", "verifyBackup"};
+      "previewRetention", "setRetention", "makeBackup", "verifyBackup"};
   std::set<std::string> unnamed;
   for (const RouteInfo& route : routes())
     if (route.method != "GET" && route.ends.empty()) unnamed.insert(route.id);

@@ -11,6 +11,7 @@
 #include "core/json.hpp"
 #include "core/result.hpp"
 #include "db/store/people/role.hpp"
+#include "db/store/people/token_scope.hpp"
 #include "server/http/lane.hpp"
 #include "server/http/message.hpp"
 #include "server/http/scratch_space.hpp"
@@ -56,6 +57,7 @@ enum class Object {
   study,  ///< a research study; scope `cohort`: nothing of it is blinded any more
   model,
   station,
+  api_token,  ///< a personal API token, by the id of its entry
 };
 
 /// One end of a relation that a route makes or changes, besides the route's own object: the other
@@ -69,12 +71,20 @@ struct End {
   enum class By { id, account_name } by = By::id;
 };
 
+/// A personal API token, by which a call comes in place of a session.
+struct TokenUse {
+  std::string id;                         ///< of the token's entry
+  std::vector<store::TokenScope> scopes;  ///< the only routes that the call may use
+};
+
 struct Caller {
   Role role;
   std::string id;  ///< of the account or the station
   std::string name;
-  std::string session_hash;  ///< hash of the browser's session token; empty for a station
+  std::string
+      session_hash;  ///< hash of the browser's session token; empty for a station and an API token
   bool must_change = false;  ///< may only change the password
+  std::optional<TokenUse> token = {};
 };
 
 /// The place, type and range of an argument. A text in a path is one segment, decoded.

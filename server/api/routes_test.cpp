@@ -2,8 +2,15 @@
 #include <regex>
 #include <set>
 
+#include "assessment/criteria.hpp"
+#include "assessment/plan.hpp"
+#include "cases/certificate.hpp"
+#include "models/probing_model.hpp"
+#include "scenarios/scenario.hpp"
 #include "server/api/api_test_support.hpp"
 #include "server/api/openapi.hpp"
+#include "tests/support/schema/described.hpp"
+#include "trial/motion_program.hpp"
 
 namespace tractus {
 namespace api {
@@ -157,8 +164,77 @@ void check_units(const core::Json& json, const std::string& where) {
 }
 
 TEST_F(Routes, EveryNumberSaysItsUnitAndItsNameEndsInIt) {
-  for (const auto& [name, schema] : openapi(routes())["components"]["schemas"].items())
+  const core::Json description = openapi(routes());  // kept, since items() refers to it
+  for (const auto& [name, schema] : description["components"]["schemas"].items())
     check_units(schema, name);
+}
+
+/// The places of a schema that allow any content: a value without a type, an object without
+/// members.
+void collect_any_content(const core::Json& schema, const std::string& where,
+                         std::set<std::string>& out) {
+  const bool is_open = schema.is_boolean() || schema.empty() ||
+                       (schema.value("type", core::Json()) == "object" &&
+                        !schema.contains("properties") && !schema.contains("additionalProperties"));
+  if (is_open) out.insert(where);
+  if (!schema.is_object()) return;
+  if (schema.contains("properties"))
+    for (const auto& [name, field] : schema["properties"].items())
+      collect_any_content(field, where + "/" + name, out);
+  if (const auto more = schema.find("additionalProperties"); more != schema.end() && *more != false)
+    collect_any_content(*more, *more == true ? where : where + "/*", out);
+  if (schema.contains("items")) collect_any_content(schema["items"], where + "/*", out);
+  if (schema.contains("anyOf"))
+    for (const auto& inner : schema["anyOf"]) collect_any_content(inner, where, out);
+}
+
+TEST_F(Routes, DescribeAllContentButThatOfOthers) {
+  const std::map<std::string, std::string> allowed{
+      {"AuditRow/detail", "what a caller sent, to any route, also invalid"},
+      {"Description", "described by the OpenAPI Specification 3.1"},
+      {"TrialEvent/detail", "of a recorded file, whose events another version may have written"}};
+  std::set<std::string> expected, found;
+  for (const auto& [place, reason] : allowed) expected.insert(place);
+  const core::Json description = openapi(routes());
+  for (const auto& [name, schema] : description["components"]["schemas"].items())
+    collect_any_content(schema, name, found);
+  EXPECT_EQ(found, expected);
+}
+
+TEST(AnyContent, IsFoundWhereverItStands) {
+  // By hand, after JSON Schema 2020-12, 4.3.2 and 10.3.2.3: true, {} and an object that names no member allow anything.
+  const core::Json planted = core::Json::parse(R"({"type": "object", "properties": {
+      "open": {"type": "object", "additionalProperties": true}, "bare": {"type": "object"},
+      "closed": {"type": "object", "additionalProperties": false}, "text": {"type": "string"},
+      "list": {"type": "array", "items": {}}, "map": {"type": "object", "additionalProperties": {"type": "number"}},
+      "either": {"anyOf": [{"type": "null"}, {"type": "object", "additionalProperties": true}]}},
+      "additionalProperties": false})");
+  std::set<std::string> found;
+  collect_any_content(planted, "S", found);
+  EXPECT_EQ(found, (std::set<std::string>{"S/open", "S/bare", "S/list/*", "S/either"}));
+}
+
+/// The files that the program itself writes keep to what the API says of them.
+TEST_F(Routes, DescribeTheFilesThatTheProgramWrites) {
+  test_support::Described described(openapi(routes()));
+  for (int kind = 0; kind < scenarios::kKinds; ++kind) {
+    core::Json scenario = scenarios::tuned(scenarios::Kind(kind)).value().to_json();
+    EXPECT_EQ(described.deviations("ScenarioFile", scenario), "");
+    EXPECT_EQ(described.deviations("ScenarioOrTuned", scenario), "");
+    scenario.erase("origin");
+    EXPECT_EQ(described.deviations("ScenarioDraft", scenario), "");
+    EXPECT_NE(described.deviations("ScenarioFile", scenario), "") << "an origin is missing";
+    scenario["bone"]["stiffness_N_per_m"] = "hard";
+    EXPECT_NE(described.deviations("ScenarioDraft", scenario), "") << "a text for a number";
+  }
+  EXPECT_EQ(described.deviations("ModelFile", models::PalpationModel{}.to_json()), "");
+  EXPECT_EQ(described.deviations("ModelFile", models::ProbingModel{}.to_json()), "");
+  EXPECT_EQ(described.deviations("PlanFile", assessment::example_plan()), "");
+  EXPECT_EQ(described.deviations("CriteriaFile", assessment::Criteria::usual().to_json()), "");
+  const trial::MotionProgram program{.name = "strokes", .words = "slow", .moves = {{}}};
+  EXPECT_EQ(described.deviations("MotionProgram", program.to_json()), "");
+  core::Json certificate = cases::Certificate{}.to_json();
+  EXPECT_EQ(described.deviations("CaseCertificate", certificate), "");
 }
 
 }  // namespace

@@ -15,6 +15,7 @@
 #include "server/api/audit_entry.hpp"
 #include "server/api/people/authentication.hpp"
 #include "server/api/people/throttle.hpp"
+#include "server/api/people/token_scopes.hpp"
 
 namespace tractus {
 namespace api {
@@ -124,6 +125,17 @@ struct Asked {
   bool overstepped = false;  ///< asked for what is not theirs
 };
 
+/// Errors: forbidden if the call comes by an API token without a scope of the route.
+core::Result<void> check_scope(const RouteInfo& route, const Caller& caller) {
+  if (!caller.token || allows(caller.token->scopes, route)) return {};
+  std::vector<std::string_view> needed;
+  for (const TokenScope scope : scopes_of(route)) needed.push_back(name(scope));
+  if (needed.empty())
+    return core::Error{core::Errc::forbidden, "this route cannot be called with an API token"};
+  return core::Error{core::Errc::forbidden,
+                     fmt::format("this API token lacks the scope {}", fmt::join(needed, " or "))};
+}
+
 /// @param asked  gets who it is, allowed or not
 core::Result<Caller> allowed_caller(Backend& backend, const RouteInfo& route,
                                     const http::RequestHead& head, Asked* asked = nullptr,
@@ -138,6 +150,10 @@ core::Result<Caller> allowed_caller(Backend& backend, const RouteInfo& route,
       return core::Error{
           core::Errc::forbidden,
           fmt::format("this route is not allowed for the role {}", name(caller.role))};
+    }
+    if (const auto scoped = check_scope(route, caller); !scoped) {
+      if (asked) asked->overstepped = true;
+      return scoped.error();
     }
     if (caller.must_change && !route.before_password_change)
       return core::Error{core::Errc::forbidden,
@@ -165,6 +181,10 @@ http::Response refusal(const core::Error& error, std::string_view allowed) {
     auto response =
         http::error_response(405, "bad_input", "this address accepts only the methods " + methods);
     return response.with("Allow", methods), response;
+  }
+  if (is_throttled(error)) {
+    auto response = http::error_response(429, "too_many", error.what);
+    return response.with("Retry-After", std::to_string(kTokenRetry_s)), response;
   }
   auto response = error_response(error);
   if (error.code == core::Errc::unauthorised) response.with("WWW-Authenticate", "Bearer");

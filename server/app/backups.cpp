@@ -118,6 +118,8 @@ void BackupFolder::start(const api::Backup& backup, std::function<void(api::Back
   failed_.reset();
   thread_ = std::thread([this, one = backup, work = std::move(work)]() mutable {
     work(one);
+    const bool failed = one.state == api::BackupState::failed || one.holds == false;
+    if (failed && failed_now_) failed_now_(one);
     const std::lock_guard done(mutex_);
     if (one.state == api::BackupState::failed) failed_ = one;
     current_.reset();

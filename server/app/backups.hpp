@@ -25,6 +25,11 @@ class BackupFolder final : public api::Backups {
   core::Result<std::vector<api::Backup>> list() override;
   core::Result<api::Backup> make(const std::string& by) override;
   core::Result<api::Backup> verify(const std::string& id) override;
+  /// Calls `failed` with each backup that could not be made or does not hold. Call before the first
+  /// one is made.
+  void on_failure(std::function<void(const api::Backup&)> failed) {
+    failed_now_ = std::move(failed);
+  }
 
  private:
   void start(const api::Backup& backup, std::function<void(api::Backup&)> work);
@@ -35,6 +40,7 @@ class BackupFolder final : public api::Backups {
   void keep(const api::Backup& backup) const;
 
   std::filesystem::path data_, folder_;
+  std::function<void(const api::Backup&)> failed_now_ = {};
   std::mutex mutex_;  ///< guards all below
   std::optional<api::Backup> current_, failed_;
   bool ending_ = false;

@@ -8,6 +8,7 @@
 #include "db/store/database/copy.hpp"
 #include "db/store/trials/uploads.hpp"
 #include "server/app/anchors.hpp"
+#include "server/app/leaving.hpp"
 
 namespace tractus {
 namespace app {
@@ -21,7 +22,7 @@ constexpr std::uint64_t kMaxSmall_bytes = 64u << 20;
 std::vector<std::string> small_files(const fs::path& folder) {
   std::vector<std::string> out;
   std::error_code failure;
-  for (const char* name : {"secret.key", kHighWater, kAnchors})
+  for (const char* name : {"secret.key", kHighWater, kAnchors, kErasureList})
     if (fs::exists(folder / name, failure)) out.emplace_back(name);
   for (const auto& entry : fs::directory_iterator(folder / kCertificates, failure))
     out.push_back(std::string(kCertificates) + "/" + entry.path().filename().string());
@@ -157,6 +158,28 @@ core::Result<void> check_file(const fs::path& path, const core::Json& expected) 
                      path.string() + ": the file differs from its SHA-256 in backup.json"};
 }
 
+/// Erases in the folder whom the lists name, of whom `outside` are not in the backup itself. Says so in the manifest.
+core::Result<void> erase_again(const fs::path& folder, const fs::path& from,
+                               const fs::path& erasures, core::Json& manifest) {
+  std::vector<fs::path> lists{fs::absolute(from).lexically_normal().parent_path() / kErasureList};
+  if (!fs::path(from).has_filename())  // "backups/ID/"
+    lists.front() = lists.front().parent_path().parent_path() / kErasureList;
+  std::error_code failure;
+  std::erase_if(lists, [&](const fs::path& list) { return !fs::exists(list, failure); });
+  if (!erasures.empty()) lists.push_back(erasures);
+  const std::size_t outside = lists.size();
+  if (fs::exists(from / kErasureList, failure)) lists.push_back(from / kErasureList);
+  auto data = TRY(open_data(folder, Database::file_in(folder)));
+  std::vector<store::Erasure> people;
+  for (const fs::path& list : lists) {
+    const auto more = TRY(read_erasure_list(list));
+    people.insert(people.end(), more.begin(), more.end());
+  }
+  manifest["erased"] = TRY(apply_erasures(data, people));
+  manifest["erasure_lists"] = outside;
+  return {};
+}
+
 core::Result<core::ScratchFolder> scratch_for(const fs::path& target) {
   std::error_code failure;
   if (fs::exists(target, failure))
@@ -190,7 +213,7 @@ core::Result<core::Json> back_up(const fs::path& data, const fs::path& out,
 }
 
 core::Result<core::Json> restore(const fs::path& from, const fs::path& data, const Database& target,
-                                 const core::Progress& shown) {
+                                 const core::Progress& shown, const fs::path& erasures) {
   auto manifest = TRY(read_manifest(from));
   TRY(check_file(from / kDatabase, manifest.value("database_sha256", core::Json())));
   for (const auto& [name, sha256] : manifest["files"].items()) {
@@ -206,6 +229,7 @@ core::Result<core::Json> restore(const fs::path& from, const fs::path& data, con
     return core::Error{core::Errc::io, fmt::format("{}: cannot copy: {}",
                                                    (from / kDatabase).string(), failure.message())};
   TRY(copy_files(from, scratch.path(), shown));
+  TRY(erase_again(scratch.path(), from, erasures, manifest));
   if (target.is_shared()) TRY(move_records(scratch.path(), target));
   TRY(scratch.keep_as(data));
   return manifest;

@@ -19,10 +19,14 @@ core::Result<core::Json> back_up(const std::filesystem::path& data,
 
 /// Makes a new data folder of a backup, every file checked against backup.json and its name. Its
 /// records go into `target`: a PostgreSQL database, which must be empty, or the folder's own file:
-/// so a server moves from one to the other.
+/// so a server moves from one to the other. People who were erased since the backup was made are
+/// erased in the new folder before it appears: those of the list in the backup, of the list beside
+/// the backup's folder, and of `erasures` (leaving.hpp). "erased" in the answer counts them, and
+/// "erasure_lists" is how many lists there were outside the backup.
 /// Errors: as above; bad_input when `from` is no backup.
 core::Result<core::Json> restore(const std::filesystem::path& from,
                                  const std::filesystem::path& data, const Database& target,
-                                 const core::Progress& shown);
+                                 const core::Progress& shown,
+                                 const std::filesystem::path& erasures = {});
 
 }  // namespace tractus::app

@@ -67,6 +67,15 @@ int say_examined(const Common& common, const Examined& examined) {
   return fine ? 0 : 1;
 }
 
+/// What the restored folder knows of people who left since the backup was made.
+std::string erasures_text(const core::Json& manifest) {
+  if (manifest.value("erasure_lists", 0) == 0)
+    return "no list of erasures was found beside the backup, and none was given with --erasures: "
+           "people who were erased since the backup was made are in the restored folder again";
+  return fmt::format("{} people who left since the backup was made were erased again",
+                     manifest.value("erased", 0));
+}
+
 /// Rows that are not covered are a finding, but not of a backup that is from before they were.
 enum class Covered { must_be, may_be };
 
@@ -98,10 +107,17 @@ Run backup_command(CLI::App& command) {
 Run restore_command(CLI::App& command) {
   const auto common = common_options(command);
   const auto from = std::make_shared<std::filesystem::path>();
+  const auto erasures = std::make_shared<std::filesystem::path>();
   command.add_option("--from", *from, "Folder of the backup")->required();
+  command.add_option("--erasures", *erasures,
+                     "File erasures.list of the server's data folder: people who were erased since "
+                     "the backup was made are erased again. The list beside the backup's folder is "
+                     "used without this option");
   return [=]() -> core::Result<int> {
     auto target = TRY(new_database(common->data));
-    TRY(restore(*from, common->data, target, core::terminal_progress("Restore")));
+    const auto manifest =
+        TRY(restore(*from, common->data, target, core::terminal_progress("Restore"), *erasures));
+    if (!common->json) fmt::print("{}\n", erasures_text(manifest));
     return verified(*common, Covered::may_be);
   };
 }

@@ -4,6 +4,7 @@
 #include <pthread.h>
 #include <signal.h>
 
+#include <atomic>
 #include <charconv>
 #include <chrono>
 #include <cstdio>
@@ -15,6 +16,7 @@
 #include "core/try.hpp"
 #include "db/store/people/consent.hpp"
 #include "server/api/backend.hpp"
+#include "server/api/operations/notifier.hpp"
 #include "server/api/people/oidc.hpp"
 #include "server/api/refusals.hpp"
 #include "server/api/service.hpp"
@@ -23,6 +25,7 @@
 #include "server/app/backups.hpp"
 #include "server/app/freed_memory.hpp"
 #include "server/app/import_process.hpp"
+#include "server/app/leaving.hpp"
 #include "server/app/log.hpp"
 #include "server/http/certificates.hpp"
 #include "server/http/static_files.hpp"
@@ -222,6 +225,19 @@ core::Result<std::optional<api::Secrets::Key>> pseudonym_key_of(const std::files
   return Maybe(key);
 }
 
+/// Those who chose it are told.
+void note_failed_backup(store::Store& store, const api::Backup& backup) {
+  const auto noted = store.write([&](store::Writing& tx) {
+    return store::note_event(tx,
+                             {.id = {},
+                              .kind = store::NotificationKind::backup_failed,
+                              .key = fmt::format("backup/{}/{}", backup.id, backup.verified_utc_us),
+                              .subject = backup.id,
+                              .at_utc_us = core::utc_us()});
+  });
+  if (!noted) log_line({{"what", "a failed backup was not noted for those who are told"}});
+}
+
 }  // namespace
 
 core::Result<void> serve(const ServeOptions& given) {
@@ -244,6 +260,8 @@ core::Result<void> serve(const ServeOptions& given) {
     auto settings = TRY(api::read_oidc_settings(*options.oidc));
     oidc_settings = std::move(settings);
   }
+  api::NotifierSettings told{.networks = options.webhook_networks};
+  if (options.mail) told.mail = TRY(api::read_mail_settings(*options.mail));
   const auto pseudonym_key = TRY(pseudonym_key_of(
       options.pseudonym_key.value_or(given.data / "pseudonyms" / "key"), data.store));
   auto runner = jobs::Runner::start(
@@ -255,11 +273,18 @@ core::Result<void> serve(const ServeOptions& given) {
   if (!runner) return runner.error();
   BackupFolder backups(given.data, given.backups.value_or(given.data / "backups"));
   TRY(backups.tidy(!data.store.shared()));
+  backups.on_failure(
+      [&store = data.store](const api::Backup& backup) { note_failed_backup(store, backup); });
+  std::atomic<Leaving*> leaving = nullptr;  // none before the trail is begun
   api::Backend backend{.store = data.store,
                        .objects = data.objects,
                        .partials = data.partials,
                        .now_utc_us = core::utc_us,
-                       .work_waits = [&runner] { (*runner)->wake(); },
+                       .work_waits =
+                           [&runner, &leaving] {
+                             (*runner)->wake();
+                             if (Leaving* one = leaving) one->wake();
+                           },
                        .secrets = data.secrets,
                        .secure_cookies = options.http.tls || options.http.behind_proxy,
                        .log = log_line,
@@ -287,12 +312,20 @@ core::Result<void> serve(const ServeOptions& given) {
     if (oidc_settings->base.empty()) oidc_settings->base = address_of(options, server.port());
     backend.oidc = &oidc.emplace(std::move(*oidc_settings));
   }
+  told.base = told.mail ? told.mail->base : address_of(options, server.port());
+  api::Notifier notifier(backend, std::move(told));
+  backend.notifier = &notifier;
+  notifier.start();
   signals.watch(server);
   say_where(options, server.port());
   {
     const Anchoring anchoring(data, options.anchor_places);
+    Leaving people(data, {given.data / kErasureList,
+                          given.backups.value_or(given.data / "backups") / kErasureList});
+    leaving = &people;
     log_line({{"what", "serving"}, {"tls", options.http.tls.has_value()}});
     server.run();
+    leaving = nullptr;
     (*runner)->end();  // what a job writes at last is anchored too
   }
   log_line({{"what", "stopped"}});

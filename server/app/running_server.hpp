@@ -24,6 +24,8 @@ struct ServeOptions {
   std::optional<std::pair<std::filesystem::path, std::filesystem::path>> certificate;
   std::chrono::milliseconds job_lease{30'000};  ///< see jobs::Runner
   std::optional<std::filesystem::path> oidc;    ///< settings of a provider of identities
+  std::optional<std::filesystem::path> mail;    ///< settings of the mail server
+  http::Networks webhook_networks = {};         ///< private networks whose webhooks are called
   /// The key of exports' pseudonyms; none: DATA/pseudonyms/key.
   std::optional<std::filesystem::path> pseudonym_key;
   std::vector<AnchorPlace> anchor_places = {};  ///< where anchors of the audit trail go as well

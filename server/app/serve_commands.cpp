@@ -57,6 +57,14 @@ Run serve_command(CLI::App& command) {
   const auto oidc = std::make_shared<std::filesystem::path>();
   command.add_option("--oidc", *oidc,
                      "Settings file of an OpenID Connect provider with which people can sign in");
+  const auto mail = std::make_shared<std::filesystem::path>();
+  command.add_option("--mail", *mail,
+                     "Settings file of the mail server by which people are told of events");
+  const auto webhook_networks = std::make_shared<std::vector<std::string>>();
+  command.add_option(
+      "--webhook-network", *webhook_networks,
+      "Private address or network (ADDRESS/BITS) whose webhooks the server calls; may be repeated "
+      "(default: only public addresses)");
   const auto pseudonyms = std::make_shared<std::filesystem::path>();
   command.add_option(
       "--pseudonym-key", *pseudonyms,
@@ -85,6 +93,13 @@ Run serve_command(CLI::App& command) {
     }
     if (!web->empty()) options->web = *web;
     if (!oidc->empty()) options->oidc = *oidc;
+    if (!mail->empty()) options->mail = *mail;
+    if (!webhook_networks->empty()) {
+      auto networks = http::Networks::parse(*webhook_networks);
+      if (!networks)
+        return core::Error{networks.error().code, "--webhook-network " + networks.error().what};
+      options->webhook_networks = std::move(*networks);
+    }
     if (!pseudonyms->empty()) options->pseudonym_key = *pseudonyms;
     if (!certificate->empty()) options->certificate.emplace(*certificate, *key);
     if (!proxies->empty()) {

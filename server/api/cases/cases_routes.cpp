@@ -4,6 +4,7 @@
 #include "core/try.hpp"
 #include "db/store/cases/cases.hpp"
 #include "server/api/backend.hpp"
+#include "server/api/cases/case_file_schemas.hpp"
 #include "server/api/cases/preview.hpp"
 #include "server/api/finding/list_request.hpp"
 #include "server/api/route.hpp"
@@ -126,8 +127,7 @@ std::vector<RouteInfo> cases_routes() {
   RouteInfo one = read_route("/{id}", "case", "Read the signed manifest case.json, byte for byte",
                              "CaseManifest");
   one.parameters = {id};
-  one.schemas = {
-      {"CaseManifest", schema::anything("Manifest of a case in the format tractus-case/1")}};
+  one.schemas = case_file_schemas();
   one.handle = manifest;
 
   RouteInfo bytes = read_route("/{id}/parts/{name}", "casePart",

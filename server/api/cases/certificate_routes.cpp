@@ -88,6 +88,24 @@ Json certificate_wish() {
   return schema::object(fields);
 }
 
+Json perception_schema() {
+  using namespace schema;
+  return object(
+      {{"force_weber", number("1", "Just noticeable difference of a force, as a share of it")},
+       {"force_threshold_N", number("N", "Smallest force that is felt")},
+       {"wander_m", number("m", "Standard deviation of the hand's position")}});
+}
+
+/// d′ of each wall under another assumption.
+Json sensitivity_schema(const Json& d) {
+  using namespace schema;
+  std::vector<Field> walls;
+  for (const std::string& wall : core::names<volume::Wall>()) walls.emplace_back(wall, d);
+  return object({{"assumption", text("Number of the perception that is changed")},
+                 {"value", number("the assumption's", "Its value")},
+                 {"d_prime", object(walls)}});
+}
+
 std::vector<NamedSchema> certificate_schemas() {
   using namespace schema;
   const Json d = nullable(number("1", "In standard deviations; null where it was not tried"));
@@ -120,10 +138,9 @@ std::vector<NamedSchema> certificate_schemas() {
        object({{"format", text("tractus-certificate/1")},
                {"passes", truth("True if a breach of every wall can be told")},
                {"preparation", one_of<volume::Preparation>("How the bone is prepared")},
-               {"perception", anything("What the observer's hand can tell")},
+               {"perception", perception_schema()},
                {"walls", array(ref("WallCertificate"), "Walls in the order of PlannedTract")},
-               {"sensitivities",
-                array(anything("d′ of each wall under another assumption"), "One at a time")}})},
+               {"sensitivities", array(sensitivity_schema(d), "One assumption at a time")}})},
       {"CertificateWish", certificate_wish()},
       {"PlannedCertificate",
        object({{"certificate", nullable(ref("CaseCertificate"))},

@@ -8,6 +8,7 @@
 #include "db/store/cases/cases.hpp"
 #include "db/store/cases/scenarios.hpp"
 #include "scenarios/demand.hpp"
+#include "server/api/cases/case_file_schemas.hpp"
 #include "server/api/route.hpp"
 #include "server/api/schema.hpp"
 #include "server/api/studies/study_plan.hpp"
@@ -245,9 +246,6 @@ std::vector<NamedSchema> version_schemas() {
                {"tuned", array(tuned,
                                "Tuned scenarios that come with the program; routes take the kind "
                                "of such a scenario in place of an id")}})},
-      {"ScenarioFile", anything("Scenario in the format tractus-scenario/1")},
-      {"ScenarioDraft", anything("Scenario in the format tractus-scenario/1, without the field "
-                                 "origin, which the server writes")},
       {"NewScenario",
        object({{"scenario", ref("ScenarioDraft")},
                {"parent", optional(text("Id of the version from which the draft was made, or the "
@@ -292,9 +290,10 @@ std::vector<RouteInfo> scenarios_routes() {
                      "the tuned scenarios that come with the program",
                      "", "ScenarioVersions", list);
   all.schemas = version_schemas();
-  return {look, all,
-          scenario_route("GET", "/{id}", "scenario", "Read the file of a version", "",
-                         "ScenarioFile", one),
+  RouteInfo file = scenario_route("GET", "/{id}", "scenario", "Read the file of a version", "",
+                                  "ScenarioFile", one);
+  file.schemas = scenario_file_schemas();
+  return {look, all, file,
           scenario_route("POST", "", "addScenario", "Store a draft as a new version", "NewScenario",
                          "ScenarioVersion", add),
           scenario_route("POST", "/{id}/publish", "publishScenario",

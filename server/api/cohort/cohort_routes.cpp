@@ -3,6 +3,7 @@
 
 #include "core/try.hpp"
 #include "db/store/cohort/analyses.hpp"
+#include "server/api/cohort/analysis_file_schemas.hpp"
 #include "server/api/cohort/cohort_questions.hpp"
 #include "server/api/route.hpp"
 #include "server/api/schema.hpp"
@@ -155,29 +156,50 @@ RouteInfo cohort_route(std::string method, std::string tail, std::string id, std
   return out;
 }
 
-std::vector<NamedSchema> plan_schemas() {
+std::vector<Field> locked_plan_fields() {
   return {
+      {"id", text("Id of the plan, which never changes")},
+      {"title", text("Title of the plan")},
+      {"study", nullable(text("Id of the study whose trials the plan uses; null: all trials"))},
+      {"data_seen", truth("True if the data could be seen before the plan was locked, so "
+                          "that the analysis is not confirmatory")},
+      {"trials_then",
+       integer("1",
+               "Number of scored trials for this plan on this server when the plan was locked")},
+      {"made_utc_us",
+       integer("us", "Time when the plan was locked, in microseconds since 1970-01-01 UTC")},
+      {"made_by", text("Name of the account that locked the plan")}};
+}
+
+std::vector<Field> analysis_fields() {
+  return {
+      {"id", text("Id of the analysis")},
+      {"plan", nullable(text("Id of the locked plan; null for an analysis without a plan"))},
+      {"study", nullable(text("Id of the study; null: all trials"))},
+      {"state", one_of<store::WorkState>("State of the analysis")},
+      {"share", number("1", "Completed share of the work, 0 to 1")},
+      {"error", text("Reason for the failure; empty if the analysis did not fail")},
+      {"snapshot", nullable(text("SHA-256 of the frozen data; null until the data are frozen"))},
+      {"made_utc_us", integer("us", "Time of the request, in microseconds since 1970-01-01 UTC")},
+      {"made_by", text("Name of the account that requested the analysis")}};
+}
+
+std::vector<NamedSchema> plan_schemas() {
+  std::vector<Field> whole = locked_plan_fields();
+  whole.emplace_back("plan", ref("PlanFile"));
+  whole.emplace_back("analyses",
+                     array(ref("CohortAnalysis"), "Analyses with the plan, newest first"));
+  std::vector<NamedSchema> out = plan_file_schemas();
+  out.push_back(
       {"PlanToLock",
-       object({{"plan", anything("Analysis plan in the format tractus-plan/1, without a lock")},
+       object({{"plan", ref("PlanFile")},
                {"study", optional(text("Id of the study; the plan then uses only trials of this "
                                        "study; if it is missing, all trials"))},
                {"data_seen", optional(truth("True if the author already knows the data, so that "
-                                            "the analysis is a reanalysis; default false"))}})},
-      {"LockedPlan",
-       object(
-           {{"id", text("Id of the plan, which never changes")},
-            {"title", text("Title of the plan")},
-            {"study",
-             nullable(text("Id of the study whose trials the plan uses; null: all trials"))},
-            {"data_seen", truth("True if the data could be seen before the plan was locked, so "
-                                "that the analysis is not confirmatory")},
-            {"trials_then",
-             integer(
-                 "1",
-                 "Number of scored trials for this plan on this server when the plan was locked")},
-            {"made_utc_us",
-             integer("us", "Time when the plan was locked, in microseconds since 1970-01-01 UTC")},
-            {"made_by", text("Name of the account that locked the plan")}})}};
+                                            "the analysis is a reanalysis; default false"))}})});
+  out.push_back({"LockedPlan", object(locked_plan_fields())});
+  out.push_back({"PlanAnswer", object(whole)});
+  return out;
 }
 
 std::vector<NamedSchema> run_schemas() {
@@ -192,51 +214,27 @@ std::vector<NamedSchema> run_schemas() {
                {"formula",
                 optional(
                     text("Formula with columns of the cohort table, for example correct ~ level"))},
-               {"options", optional(anything("Options of the method: texts or numbers, by name"))},
+               {"options", optional(method_options_schema())},
                {"study", optional(text("With a method: id of the study; only trials of this study "
                                        "are analysed; if it is missing, all trials"))}})},
-      {"CohortAnalysis",
-       object(
-           {{"id", text("Id of the analysis")},
-            {"plan", nullable(text("Id of the locked plan; null for an analysis without a plan"))},
-            {"study", nullable(text("Id of the study; null: all trials"))},
-            {"state", one_of<store::WorkState>("State of the analysis")},
-            {"share", number("1", "Completed share of the work, 0 to 1")},
-            {"error", text("Reason for the failure; empty if the analysis did not fail")},
-            {"snapshot",
-             nullable(text("SHA-256 of the frozen data; null until the data are frozen"))},
-            {"made_utc_us",
-             integer("us", "Time of the request, in microseconds since 1970-01-01 UTC")},
-            {"made_by", text("Name of the account that requested the analysis")}})}};
+      {"CohortAnalysis", object(analysis_fields())}};
 }
 
 std::vector<NamedSchema> answer_schemas() {
-  return {
-      {"CohortAnswer",
-       object(
-           {{"id", text("Id of the analysis")},
-            {"plan", nullable(text("Id of the locked plan; null for an analysis without a plan"))},
-            {"study", nullable(text("Id of the study; null: all trials"))},
-            {"state", one_of<store::WorkState>("State of the analysis")},
-            {"share", number("1", "Completed share of the work, 0 to 1")},
-            {"error", text("Reason for the failure; empty if the analysis did not fail")},
-            {"snapshot",
-             nullable(text("SHA-256 of the frozen data; null until the data are frozen"))},
-            {"made_utc_us",
-             integer("us", "Time of the request, in microseconds since 1970-01-01 UTC")},
-            {"made_by", text("Name of the account that requested the analysis")},
-            {"data",
-             nullable(anything("Description of the frozen data in the format tractus-snapshot/1: "
-                               "rows, dictionary, left_out; null until the data are frozen"))},
-            {"result",
-             nullable(anything(
-                 "Result in the format tractus-result/1; null until the analysis is done"))},
-            {"repeats",
-             nullable(text(
-                 "Id of the first analysis of this plan on the same data; null if there is none"))},
-            {"same_digits",
-             nullable(truth("True if the result equals that of the first analysis to the last "
-                            "digit; null if there is no earlier analysis or no result yet"))}})}};
+  std::vector<Field> fields = analysis_fields();
+  fields.emplace_back("data", nullable(ref("Snapshot")));
+  fields.emplace_back("result", nullable(ref("AnalysisResult")));
+  fields.emplace_back(
+      "repeats",
+      nullable(
+          text("Id of the first analysis of this plan on the same data; null if there is none")));
+  fields.emplace_back(
+      "same_digits",
+      nullable(truth("True if the result equals that of the first analysis to the last "
+                     "digit; null if there is no earlier analysis or no result yet")));
+  std::vector<NamedSchema> out = analysis_file_schemas();
+  out.push_back({"CohortAnswer", object(fields)});
+  return out;
 }
 
 }  // namespace
@@ -247,12 +245,9 @@ std::vector<RouteInfo> cohort_routes() {
                    "PlanList", list_plans);
   list.schemas = {
       {"PlanList", object({{"plans", array(ref("LockedPlan"), "Locked plans, newest first")}})}};
-  RouteInfo one =
+  const RouteInfo one =
       cohort_route("GET", "plans/{id}", "analysisPlan",
                    "Read a locked plan in full, with its analyses", "PlanAnswer", plan_of);
-  one.schemas = {{"PlanAnswer",
-                  anything("A LockedPlan with two more fields: plan in the format tractus-plan/1, "
-                           "and analyses, an array of CohortAnalysis, newest first")}};
   RouteInfo answered = cohort_route(
       "GET", "analyses/{id}", "cohortAnalysis",
       "Read the state of an analysis and, when it is done, its result", "CohortAnswer", analysis);

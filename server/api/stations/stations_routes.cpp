@@ -5,6 +5,7 @@
 #include "core/bytes.hpp"
 #include "core/try.hpp"
 #include "db/store/operations/audit.hpp"
+#include "db/store/operations/notifications.hpp"
 #include "db/store/stations/fleet.hpp"
 #include "server/api/backend.hpp"
 #include "server/api/people/authentication.hpp"
@@ -71,6 +72,13 @@ Result<http::Response> report(const Call& call) {
           tx,
           {id, NoteKind::self_test, said.self_test->at_utc_us, said.self_test->to_json().dump()},
           now));
+    if (said.self_test && !said.self_test->passed)
+      TRY(store::note_event(tx,
+                            {.id = {},
+                             .kind = store::NotificationKind::self_test_failed,
+                             .key = fmt::format("self_test/{}/{}", id, said.self_test->at_utc_us),
+                             .subject = id,
+                             .at_utc_us = now}));
     if (!said.calibration) return {};
     return store::add_station_note(tx,
                                    {id, NoteKind::calibration, said.calibration->at_utc_us,

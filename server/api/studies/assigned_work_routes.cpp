@@ -1,11 +1,18 @@
 /// A trainee at a station: badge and PIN in, the next assigned trial out.
+#include <algorithm>
+
 #include "core/bytes.hpp"
 #include "core/try.hpp"
 #include "db/store/cases/cases.hpp"
 #include "db/store/operations/audit.hpp"
+#include "db/store/people/people.hpp"
 #include "db/store/studies/assignments.hpp"
+#include "db/store/studies/blinding.hpp"
+#include "db/store/trials/trials.hpp"
+#include "metrics/metric.hpp"
 #include "server/api/backend.hpp"
 #include "server/api/people/authentication.hpp"
+#include "server/api/people/group_admission.hpp"
 #include "server/api/people/people_json.hpp"
 #include "server/api/people/throttle.hpp"
 #include "server/api/schema.hpp"
@@ -15,6 +22,7 @@
 #include "study/sealed_law.hpp"
 #include "trial/trial.hpp"
 #include "wire/assigned_work.hpp"
+#include "wire/trial_result.hpp"
 
 namespace tractus {
 namespace api {
@@ -45,6 +53,16 @@ Result<store::Account> let_in(Backend& backend, const store::Attempt& attempt,
   return Error{Errc::unauthorised, "badge or PIN is wrong"};
 }
 
+/// Somebody whom the identity provider has not vouched for in too long has left, badge or not.
+Result<void> refuse_absent(const Call& call, const store::Account& account, std::int64_t now) {
+  const auto absent =
+      TRY(call.backend.store.read([&](store::Reading& tx) { return is_absent(tx, account, now); }));
+  if (!absent) return {};
+  TRY(call.backend.store.write(
+      [&](store::Writing& tx) { return disable_absent(tx, account, now); }));
+  return Error{Errc::unauthorised, "badge or PIN is wrong"};
+}
+
 Result<http::Response> sign_in_at_station(const Call& call) {
   auto json = TRY(core::parse_json(call.request.body, "body"));
   core::Fields fields(json, "body");
@@ -54,8 +72,9 @@ Result<http::Response> sign_in_at_station(const Call& call) {
   auto early = TRY(too_early(call.backend, attempt));
   if (early) return std::move(*early);
   auto account = TRY(let_in(call.backend, attempt, pin));
-  const std::string ticket = new_token();
   const std::int64_t now = call.backend.now_utc_us();
+  TRY(refuse_absent(call, account, now));
+  const std::string ticket = new_token();
   TRY(call.backend.store.write([&](store::Writing& tx) -> Result<void> {
     TRY(check_unchanged(tx, account));
     TRY(note_success(tx, account.id, attempt, now));
@@ -64,13 +83,9 @@ Result<http::Response> sign_in_at_station(const Call& call) {
   return json_response({{"ticket", ticket}, {"name", account.name}});
 }
 
-/// The account to which the ticket in the body belongs. Errors: forbidden if the ticket is unknown
-/// or has expired.
-Result<store::Account> holder(const Call& call, std::string& hash) {
-  auto json = TRY(core::parse_json(call.request.body, "body"));
-  core::Fields fields(json, "body");
-  hash = ticket_hash(call, fields.text("ticket", 64));
-  TRY(fields.done());
+/// The account to which the ticket belongs. Errors: forbidden if the ticket is unknown or has
+/// expired.
+Result<store::Account> holder_of(const Call& call, const std::string& hash) {
   auto session =
       TRY(call.backend.store.read([&](store::Reading& tx) { return store::session_of(tx, hash); }));
   const std::int64_t now = call.backend.now_utc_us();
@@ -78,6 +93,15 @@ Result<store::Account> holder(const Call& call, std::string& hash) {
       now - session->made_utc_us > kSessionAge_us || session->account.state != AccountState::active)
     return Error{Errc::forbidden, "sign in at this station first"};
   return std::move(session->account);
+}
+
+/// Of the ticket in the body, which holds nothing else.
+Result<store::Account> holder(const Call& call, std::string& hash) {
+  auto json = TRY(core::parse_json(call.request.body, "body"));
+  core::Fields fields(json, "body");
+  hash = ticket_hash(call, fields.text("ticket", 64));
+  TRY(fields.done());
+  return holder_of(call, hash);
 }
 
 Result<http::Response> sign_out_at_station(const Call& call) {
@@ -174,6 +198,59 @@ Result<http::Response> next_trial(const Call& call) {
   return json_response(given.work.to_json());
 }
 
+wire::ResultState result_state(store::AssessmentState state) {
+  switch (state) {
+    case store::AssessmentState::assessing:
+      return wire::ResultState::assessing;
+    case store::AssessmentState::assessed:
+      return wire::ResultState::assessed;
+    case store::AssessmentState::failed:
+      return wire::ResultState::failed;
+  }
+  return wire::ResultState::failed;
+}
+
+/// The scores that a trainee's page follows, in its order.
+std::vector<wire::ResultScore> followed_scores(const std::vector<store::ScoreRecord>& scores) {
+  auto known = metrics::all();
+  std::erase_if(known, [](const metrics::MetricInfo& info) { return info.followed == 0; });
+  std::ranges::sort(known, {}, &metrics::MetricInfo::followed);
+  std::vector<wire::ResultScore> out;
+  for (const metrics::MetricInfo& info : known) {
+    const auto found = std::ranges::find(scores, info.id, &store::ScoreRecord::metric_id);
+    if (found == scores.end() || !found->value) continue;
+    out.push_back({info.label, info.unit, std::string(name(info.shown_as)), *found->value});
+  }
+  return out;
+}
+
+/// What the trainee's own page shows of the trial now: nothing of one that is another's, held back
+/// or blinded.
+Result<wire::TrialResult> result_of(store::Reading& tx, const std::string& account_id,
+                                    const std::string& trial_id) {
+  auto seen = TRY(store::sees_own_trial(tx, account_id, trial_id));
+  auto blind = TRY(store::is_blinded(tx, trial_id));
+  if (!seen || blind) return wire::TrialResult{};
+  auto trial = TRY(store::trial_of(tx, trial_id));
+  if (!trial) return wire::TrialResult{};
+  auto scores = TRY(store::scores_of(tx, trial_id));
+  return wire::TrialResult{.state = result_state(trial->summary.state),
+                           .correct = trial->summary.correct,
+                           .scores = followed_scores(scores)};
+}
+
+Result<http::Response> trial_result(const Call& call) {
+  auto json = TRY(core::parse_json(call.request.body, "body"));
+  core::Fields fields(json, "body");
+  const std::string hash = ticket_hash(call, fields.text("ticket", 64));
+  const std::string trial_id = fields.text("trial", 32);
+  TRY(fields.done());
+  auto account = TRY(holder_of(call, hash));
+  auto result = TRY(call.backend.store.read(
+      [&](store::Reading& tx) { return result_of(tx, account.id, trial_id); }));
+  return json_response(result.to_json());
+}
+
 RouteInfo assigned_work_route(std::string tail, std::string id, std::string summary,
                               std::string body, std::string answer,
                               Result<http::Response> (*handle)(const Call&)) {
@@ -239,7 +316,27 @@ std::vector<RouteInfo> assigned_work_routes() {
   RouteInfo out = assigned_work_route("sign-out", "signOutAtStation",
                                       "Sign the trainee out at the calling station", "TicketShown",
                                       "", sign_out_at_station);
-  return {in, next, out};
+  RouteInfo result = assigned_work_route(
+      "result", "trialResultAtStation",
+      "Read the result of a trial that the signed-in trainee did, as far as the trainee's own "
+      "page shows it now",
+      "TrialOfTicket", "TrialResult", trial_result);
+  result.schemas = {
+      {"TrialOfTicket", object({{"ticket", text("Ticket from signInAtStation")},
+                                {"trial", text("Id of the trial, 32 hexadecimal characters")}})},
+      {"ResultScore",
+       object({{"label", text("Name of the metric")},
+               {"unit", text("Unit of the value; 1 for a number without a unit")},
+               {"shown_as", one_of<metrics::ShownAs>("How to write the value")},
+               {"value", number("its unit", "Value, in the unit that the field unit states")}})},
+      {"TrialResult",
+       object({{"state", one_of<wire::ResultState>(
+                             "held: the trainee may not see the result now; the other fields are "
+                             "empty then")},
+               {"correct", nullable(truth("True if the answer agrees with the truth; null if the "
+                                          "answer or the truth is missing"))},
+               {"scores", array(ref("ResultScore"), "Scores that the trainee's page follows")}})}};
+  return {in, next, result, out};
 }
 
 }  // namespace api

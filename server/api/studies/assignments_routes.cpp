@@ -2,10 +2,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <set>
 
 #include "core/try.hpp"
+#include "db/store/operations/notifications.hpp"
 #include "db/store/studies/assignments.hpp"
 #include "db/store/trials/debriefs.hpp"
+#include "db/store/trials/ratings.hpp"
 #include "server/api/backend.hpp"
 #include "server/api/finding/list_request.hpp"
 #include "server/api/people/authentication.hpp"
@@ -64,8 +67,9 @@ Result<http::Response> list_assignments(const Call& call) {
 }
 
 /// @param whose  this participant's alone; empty: everybody's.
+/// @param but    trials that are left out
 Result<Json> trials_json(store::Reading& tx, const store::AssignmentId& id,
-                         const std::string& whose) {
+                         const std::string& whose, const std::set<std::string>& but = {}) {
   auto slots = TRY(store::study_slots(tx, id));
   std::map<std::string, const store::Slot*> places;
   for (const auto& slot : slots) places[slot.id] = &slot;
@@ -74,6 +78,7 @@ Result<Json> trials_json(store::Reading& tx, const store::AssignmentId& id,
   for (const auto& trial : trials) {
     const auto place = places.find(trial.slot_id);
     if (place == places.end() || (!whose.empty() && place->second->participant != whose)) continue;
+    if (but.contains(trial.trial_id)) continue;
     auto comments = TRY(store::comments_of(tx, trial.trial_id));
     out.push_back({{"trial_id", trial.trial_id},
                    {"participant", place->second->participant},
@@ -114,7 +119,9 @@ Result<Json> whole_json(store::Reading& tx, const std::string& asked, Scope of,
                                {"participant", person.participant},
                                {"done", person.done},
                                {"planned", person.planned}});
-  auto trials = TRY(trials_json(tx, id, ""));
+  // The table names the person of each trial: one that is rated blind comes back with its name.
+  const auto hidden = TRY(store::trials_with_hidden_name(tx));
+  auto trials = TRY(trials_json(tx, id, "", hidden));
   out["trials"] = std::move(trials);
   return out;
 }
@@ -150,12 +157,24 @@ Result<http::Response> changed(const Call& call, Read read, Work work) {
   return one_assignment(call);
 }
 
+/// Trainees are told of the first release.
+Result<void> release_results(store::Writing& tx, const store::AssignmentId& id, Release release,
+                             const store::AuditStamp& stamp) {
+  TRY(store::set_release(tx, id, release, stamp));
+  if (release != Release::released) return {};
+  return store::note_event(tx, {.id = {},
+                                .kind = store::NotificationKind::released,
+                                .key = "released/" + id.text(),
+                                .subject = id.text(),
+                                .at_utc_us = stamp.at_utc_us});
+}
+
 Result<http::Response> set_release(const Call& call) {
   Release release = Release::held;
   return changed(
       call, [&](core::Fields& fields) { release = fields.word<Release>("release"); },
       [&](store::Writing& tx, const store::AssignmentId& id, const store::AuditStamp& stamp) {
-        return store::set_release(tx, id, release, stamp);
+        return release_results(tx, id, release, stamp);
       });
 }
 
@@ -175,7 +194,7 @@ Result<http::Response> release_many(const Call& call) {
     const store::AuditStamp stamp{call.caller.name, call.backend.now_utc_us()};
     for (const Json& one : *ids) {
       const auto id = TRY(store::find_assignment(tx, one.get<std::string>()));
-      TRY(store::set_release(tx, id, release, stamp));
+      TRY(release_results(tx, id, release, stamp));
       const auto now = TRY(store::assignment_of(tx, id));
       released.push_back(assignment_json(now, call.of));
     }
@@ -339,8 +358,7 @@ std::vector<NamedSchema> assignment_schemas() {
   return {
       {"AssignedCase",
        object({{"case", optional(text("Id of a published case; give either a case or a scenario"))},
-               {"scenario", optional(anything("Scenario in the format tractus-scenario/1, or a "
-                                              "tuned scenario as {\"tuned\": \"hard\"}"))},
+               {"scenario", optional(ref("ScenarioOrTuned"))},
                {"name",
                 optional(text(
                     "Name that the trainee sees; if it is missing, the number of the trial"))}})},

@@ -76,6 +76,37 @@ TEST_F(Assignments, ATraineeGetsExactlyTheNextCaseUntilNoneIsLeft) {
   EXPECT_EQ(next(in)["left"], 0);
 }
 
+TEST_F(Assignments, AStationReadsTheResultThatTheTraineesOwnPageShows) {
+  const std::string id = assigned(two_cases());
+  const std::string in = ticket();
+  const std::string trial = hand_over(next(in)["trial"]["slot"]);
+  const auto result = [&](const std::string& of, const std::string& with) {
+    const auto answer = work("result", {{"ticket", with}, {"trial", of}});
+    EXPECT_EQ(answer.status, 200) << text(answer);
+    return json(answer);
+  };
+  const core::Json held{{"state", "held"}, {"correct", nullptr}, {"scores", core::Json::array()}};
+  const auto assessed = store_.write([&](store::Writing& tx) {
+    // force_rate_max is on no trainee's page (no `followed` in its file); operation_time is.
+    return store::set_assessment(
+        tx, trial, {{"force_rate_max", 9.0, ""}, {"operation_time", 12.5, ""}}, true, "{}");
+  });
+  ASSERT_TRUE(assessed) << assessed.error().what;
+  EXPECT_EQ(result(trial, in), held) << "nobody has released it";
+  EXPECT_EQ(post("fay", "/assignments/" + id + "/release", {{"release", "released"}}).status, 200);
+  const core::Json shown = result(trial, in);
+  EXPECT_EQ(shown["state"], "assessed");
+  EXPECT_EQ(shown["correct"], true);
+  ASSERT_EQ(shown["scores"].size(), 1u) << shown;
+  EXPECT_EQ(
+      shown["scores"][0],
+      (core::Json{
+          {"label", "Operation time"}, {"unit", "s"}, {"shown_as", "number"}, {"value", 12.5}}));
+  EXPECT_EQ(result(trial_of("tia"), in), held) << "another's trial";
+  EXPECT_EQ(result(std::string(32, '0'), in), held) << "no trial looks the same";
+  EXPECT_EQ(work("result", {{"ticket", "guessed"}, {"trial", trial}}).status, 403);
+}
+
 TEST_F(Assignments, NothingThatAStationOrATraineeIsToldNamesTheCase) {
   const std::string id = assigned(two_cases());
   const std::string told = next(ticket()).dump() + text(get("tom", "/assignments")) +

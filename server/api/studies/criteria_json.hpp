@@ -10,6 +10,8 @@ namespace tractus::api {
 core::Json requirements_json(const assessment::Criteria& of);
 
 core::Json requirement_schema();
+/// Of a file in the format tractus-criteria/1.
+core::Json criteria_file_schema();
 core::Json judged_requirement_schema();
 /// Of assessment::verdict_json.
 std::vector<schema::Field> verdict_fields();

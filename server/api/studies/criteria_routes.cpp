@@ -270,7 +270,8 @@ RouteInfo criteria_route(std::string method, std::string path, std::string id, s
 
 std::vector<NamedSchema> listed_schemas() {
   using namespace schema;
-  return {{"Requirement", requirement_schema()},
+  return {{"CriteriaFile", criteria_file_schema()},
+          {"Requirement", requirement_schema()},
           {"CriteriaVersion",
            object({{"version", integer("1", "Number of the version, counted from 1")},
                    {"requirements",
@@ -386,11 +387,11 @@ RouteInfo stating_route() {
   out.body_limit_bytes = kMaxCriteria_bytes;
   out.ends = {{"/case", Object::published_case, {Role::admin, Role::director, Role::faculty}},
               {"/assignment", Object::assignment, teachers()}};
-  out.schemas = {{"NewCriteria",
-                  object({{"case", optional(text("Id of a case"))},
-                          {"assignment", optional(text("Id of an assignment"))},
-                          {"reason", optional(text("Reason of the change, at most 500 bytes"))},
-                          {"criteria", anything("Criteria in the format tractus-criteria/1")}})}};
+  out.schemas = {
+      {"NewCriteria", object({{"case", optional(text("Id of a case"))},
+                              {"assignment", optional(text("Id of an assignment"))},
+                              {"reason", optional(text("Reason of the change, at most 500 bytes"))},
+                              {"criteria", ref("CriteriaFile")}})}};
   return out;
 }
 

@@ -322,7 +322,7 @@ RouteInfo making_route() {
             {"cases", array(ref("AssignedCase"), "Cases of the step")},
             {"repeats", optional(integer("1", "Planned trials of each case, 1 to 20; default 1"))},
             {"after", array(text("Id of an earlier step"), "Steps to be passed before")},
-            {"criteria", anything("What passing the step is, tractus-criteria/1")}})},
+            {"criteria", ref("CriteriaFile")}})},
       {"NewCurriculum",
        object({{"id", optional(text("Id of the curriculum that gets a new version; if it is "
                                     "missing, a new curriculum is made"))},

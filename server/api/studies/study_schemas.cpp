@@ -125,9 +125,7 @@ std::vector<NamedSchema> study_deed_schemas() {
       {"NewStudy",
        object({{"id", text("Id of the study, 1 to 32 of the characters a-z, 0-9 and -")},
                {"title", text("Title of the study")},
-               {"scenarios", array(anything("Scenario in the format tractus-scenario/1, or a tuned "
-                                            "scenario as {\"tuned\": \"hard\"}"),
-                                   "Scenarios of the study, 1 to 16")},
+               {"scenarios", array(ref("ScenarioOrTuned"), "Scenarios of the study, 1 to 16")},
                {"repeats", integer("1", "Number of repeats of each scenario, 1 to 20")},
                {"ordering", optional(one_of<study::Ordering>(
                                 "Order of the scenarios: random, or balanced by Williams "

@@ -6,6 +6,7 @@
 #include "db/store/cases/cases.hpp"
 #include "db/store/operations/jobs.hpp"
 #include "db/store/people/accounts.hpp"
+#include "db/store/people/erasure.hpp"
 #include "db/store/studies/study_slots.hpp"
 #include "server/api/trials/uploads.hpp"
 #include "trial/trial_file.hpp"
@@ -153,6 +154,7 @@ core::Result<void> store_trial(Backend& backend, const store::Upload& upload,
     return linked;
   const std::int64_t now = backend.now_utc_us();
   return backend.store.write([&](store::Writing& tx) -> core::Result<void> {
+    TRY(store::check_trial_stays(tx, upload.trial_id));  // its person may have left meanwhile
     TRY(store::add_object(tx, upload.sha256, upload.size_bytes, now));
     TRY(store::add_trial(tx, trial, now));
     TRY(store::complete_upload(tx, upload.trial_id));

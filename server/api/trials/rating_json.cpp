@@ -38,16 +38,38 @@ core::Result<core::Json> rubric_version_json(const store::RubricVersion& of) {
                     {"made_by", of.made_by}};
 }
 
+namespace {
+
+/// An item as the server writes it; a file may lack what has a usual value.
+std::vector<schema::Field> rubric_item_fields() {
+  using namespace schema;
+  return {{"label", text("Name of the item")},
+          {"text", text("What is looked at; may be empty")},
+          {"low", integer("1", "Low end of the scale, in points; default 1")},
+          {"high", integer("1", "High end of the scale, in points; default 5")},
+          {"low_text", text("Description of the low end")},
+          {"middle_text", text("Description of the middle; may be empty")},
+          {"high_text", text("Description of the high end")}};
+}
+
+core::Json rubric_file_schema() {
+  using namespace schema;
+  std::vector<Field> item = rubric_item_fields();
+  for (auto& [name, field] : item)
+    if (name == "text" || name == "low" || name == "high" || name == "middle_text")
+      field = optional(field);
+  return object({{"format", file_format("tractus-rubric/1")},
+                 {"title", text("Title of the rubric")},
+                 {"items", array(object(item), "Items in order, 1 to 30")}});
+}
+
+}  // namespace
+
 std::vector<NamedSchema> rubric_schemas() {
   using namespace schema;
   return {
-      {"RubricItem", object({{"label", text("Name of the item")},
-                             {"text", text("What is looked at; may be empty")},
-                             {"low", integer("1", "Low end of the scale, in points")},
-                             {"high", integer("1", "High end of the scale, in points")},
-                             {"low_text", text("Description of the low end")},
-                             {"middle_text", text("Description of the middle; may be empty")},
-                             {"high_text", text("Description of the high end")}})},
+      {"RubricFile", rubric_file_schema()},
+      {"RubricItem", object(rubric_item_fields())},
       {"RubricVersion",
        object({{"id", text("Id of the rubric, which never changes")},
                {"version", integer("1", "Number of the version, counted from 1")},

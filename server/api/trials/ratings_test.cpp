@@ -108,12 +108,15 @@ TEST_F(RatingsByPeople, OfABlindTrialHideTheNameUntilAllHaveRated) {
     const Json listed = json(get(who, "/trials?sort=person"));
     EXPECT_EQ(listed.dump().find("Tell"), std::string::npos) << who << listed;
   }
+  const auto in_table = [&] { return json(get("fay", "/assignments/a-tom"))["trials"].size(); };
+  EXPECT_EQ(in_table(), 0u) << "the assignment's table names the person of each trial";
   EXPECT_EQ(operator_seen_by("tom"), "Tom Tell") << "tom knows";
   ASSERT_EQ(rate("fay", {4, 5}).status, 201);
   EXPECT_EQ(operator_seen_by("fay"), "");
   ASSERT_EQ(rate("flo", {4, 5}).status, 201);
   EXPECT_EQ(operator_seen_by("fay"), "Tom Tell");
   EXPECT_EQ(json(get("fay", "/trials?search=tell"))["trials"].size(), 1u);
+  EXPECT_EQ(in_table(), 1u);
 }
 
 TEST_F(RatingsByPeople, AreSeenByTheTraineeOnceReleasedAndComplete) {

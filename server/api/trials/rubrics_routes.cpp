@@ -82,7 +82,7 @@ std::vector<RouteInfo> rubrics_routes() {
        object({{"id", text("Id of the rubric: a small letter, then small letters, digits and _, at "
                            "most 32; exports name the column rating.ID_vVERSION by it")},
                {"reason", optional(text("Reason of the change, at most 500 bytes"))},
-               {"rubric", anything("Rubric in the format tractus-rubric/1")}})}};
+               {"rubric", ref("RubricFile")}})}};
   add.handle = add_rubric;
   return {list, add};
 }

@@ -7,6 +7,7 @@
 
 #include "core/try.hpp"
 #include "db/store/cases/cases.hpp"
+#include "db/store/people/erasure.hpp"
 #include "db/store/studies/study_slots.hpp"
 #include "db/store/trials/uploads.hpp"
 #include "server/api/backend.hpp"
@@ -72,8 +73,11 @@ core::Error unknown(const std::string& trial_id) {
 core::Result<store::Upload> own_upload(Backend& backend, const Caller& station,
                                        const std::string& trial_id) {
   if (!core::is_id(trial_id)) return unknown(trial_id);
-  auto upload =
-      TRY(backend.store.read([&](store::Reading& tx) { return store::upload_of(tx, trial_id); }));
+  using Known = std::optional<store::Upload>;
+  auto upload = TRY(backend.store.read([&](store::Reading& tx) -> core::Result<Known> {
+    TRY(store::check_trial_stays(tx, trial_id));
+    return store::upload_of(tx, trial_id);
+  }));
   if (!upload || upload->station_id != station.id) return unknown(trial_id);
   return std::move(*upload);
 }
@@ -91,6 +95,7 @@ core::Result<std::string> case_meant(store::Reading& tx, const Caller& station,
     auto own = TRY(store::was_handed_to(tx, *slot, station.name));
     return own ? core::Result<std::string>(slot->case_id) : absent;
   }
+  TRY(store::check_slot_stays(tx, announced));
   auto known = TRY(store::case_of(tx, announced));
   return known ? core::Result<std::string>(announced) : absent;
 }
@@ -118,6 +123,7 @@ core::Result<void> insert(store::Writing& tx, const Backend& backend, const Call
 core::Result<std::optional<store::Upload>> announced_before(
     store::Reading& tx, const Caller& station, const std::string& trial_id,
     const wire::UploadAnnouncement& announced) {
+  TRY(store::check_trial_stays(tx, trial_id));
   auto upload = store::upload_of(tx, trial_id);
   if (!upload) return upload.error();
   if (!*upload) return upload;

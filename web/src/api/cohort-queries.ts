@@ -33,9 +33,21 @@ const runFields = {
   made_by: v.string(),
 };
 export const analysisRunSchema = v.object(runFields);
+/** Of tractus-plan/1 what a page shows. */
+const planFileSchema = v.object({
+  analyses: v.array(
+    v.object({
+      id: v.string(),
+      question: v.optional(v.string()),
+      family: v.optional(v.string()),
+      method: v.string(),
+      formula: v.optional(v.string()),
+    }),
+  ),
+});
 export const lockedPlanSchema = v.object({
   ...planSummarySchema.entries,
-  plan: row,
+  plan: planFileSchema,
   analyses: v.array(analysisRunSchema),
 });
 
@@ -83,7 +95,7 @@ export const analysisResultSchema = v.object({
     rows: count,
     rows_used: count,
     simulated: v.optional(v.boolean(), false),
-    exclusions: v.array(row),
+    exclusions: v.array(v.object({ where: v.string(), reason: v.string(), rows: count })),
   }),
   analyses: v.array(
     v.looseObject({
@@ -116,7 +128,6 @@ export const readAnalysisResult = (json: unknown) => v.parse(analysisResultSchem
 
 export const analysisSchema = v.object({
   ...runFields,
-  data: v.nullable(row),
   result: v.nullable(analysisResultSchema),
   repeats: v.nullable(v.string()),
   same_digits: v.nullable(v.boolean()),

@@ -17,13 +17,10 @@ export { kBoundMethods } from './criteria-schemas';
 
 /** A requirement as the server takes it; the rest of its fields are of its kind. */
 export type NewRequirement = Readonly<Record<string, string | number>>;
-export interface NewCriteria {
-  readonly format: 'tractus-criteria/1';
-  readonly requirements: readonly NewRequirement[];
-}
+export type NewCriteria = components['schemas']['CriteriaFile'];
 export const criteriaOf = (requirements: readonly NewRequirement[]): NewCriteria => ({
   format: 'tractus-criteria/1',
-  requirements,
+  requirements: [...requirements] as NewCriteria['requirements'],
 });
 
 const posted = { method: 'POST' } as const;

@@ -136,6 +136,19 @@ export const rankedSchema = v.object({
   detection_limits: v.optional(v.array(v.object({ parameter: v.string(), value: figure, text: v.string() })), []),
 });
 
+/** tractus-program/1, kept whole: it is downloaded for a station. */
+const motionProgramSchema = v.object({
+  format: v.literal('tractus-program/1'),
+  rig: v.literal('probing'),
+  name: v.string(),
+  words: v.string(),
+  start_m: finite,
+  start_rad: finite,
+  acceleration_m_s2: finite,
+  acceleration_rad_s2: finite,
+  moves: v.array(v.object({ to_m: finite, speed_m_s: finite, to_rad: finite, speed_rad_s: finite, hold_s: finite })),
+});
+
 export const diagnosisSchema = v.object({
   verdict: v.picklist(['complete', 'missing', 'partly', 'unexplained']),
   headline: v.optional(v.string(), ''),
@@ -158,7 +171,7 @@ export const diagnosisSchema = v.object({
             recording: v.string(),
             duration_s: inSeconds,
             expected_gain: figure,
-            program: v.unknown(),
+            program: motionProgramSchema,
           }),
         ),
         [],

@@ -16,7 +16,8 @@ import type {
 } from './lab-schemas';
 import type { backupListSchema } from './backup-queries';
 import type { changedAccountsSchema, importSchema } from './class-queries';
-import type { analysisRunSchema, planListSchema } from './cohort-queries';
+import type { analysisRunSchema, analysisSchema, lockedPlanSchema, planListSchema } from './cohort-queries';
+import type { groupRulesSchema } from './group-queries';
 import type {
   accountListSchema,
   auditCheckSchema,
@@ -30,6 +31,7 @@ import type {
   newPasswordSchema,
   stationListSchema,
 } from './network-schemas';
+import type { erasurePreviewSchema, erasureSchema, retentionEffectSchema, retentionSchema } from './leaving-queries';
 import type { stationPageSchema, stationStateSchema } from './live-schemas';
 import type { offerSchema } from './oidc-queries';
 import type { cohortProgressSchema, metricsSchema, traineeListSchema } from './trainee-queries';
@@ -77,6 +79,7 @@ export interface Agreed {
   readonly backups: Takes<typeof backupListSchema, Served['Backups']>;
   readonly studyEvents: Takes<typeof studyEventsSchema, Served['StudyEvents']>;
   readonly newAccount: Takes<typeof newAccountSchema, Served['NewAccountMade']>;
+  readonly groupRules: Takes<typeof groupRulesSchema, Served['GroupRules']>;
   readonly classImport: Takes<typeof importSchema, Served['AccountsImported']>;
   readonly changedAccounts: Takes<typeof changedAccountsSchema, Served['ChangedAccounts']>;
   readonly newPassword: Takes<typeof newPasswordSchema, Served['PasswordMade']>;
@@ -87,12 +90,22 @@ export interface Agreed {
   readonly metrics: Takes<typeof metricsSchema, Served['MetricList']>;
   readonly plans: Takes<typeof planListSchema, Served['PlanList']>;
   readonly analysisRun: Takes<typeof analysisRunSchema, Served['CohortAnalysis']>;
+  readonly analysis: Takes<typeof analysisSchema, Served['CohortAnswer']>;
+  readonly lockedPlan: Takes<typeof lockedPlanSchema, Served['PlanAnswer']>;
   readonly savedViews: Takes<typeof savedViewsSchema, Served['SavedViews']>;
+  readonly erasurePreview: Takes<typeof erasurePreviewSchema, Served['ErasurePreview']>;
+  readonly erasure: Takes<typeof erasureSchema, Served['Erasure']>;
+  readonly retention: Takes<typeof retentionSchema, Served['Retention']>;
+  readonly retentionEffect: Takes<typeof retentionEffectSchema, Served['RetentionEffect']>;
 }
 
 export const kAgreed: Agreed = {
   session: true,
   savedViews: true,
+  erasurePreview: true,
+  erasure: true,
+  retention: true,
+  retentionEffect: true,
   trials: true,
   trial: true,
   signals: true,
@@ -121,6 +134,7 @@ export const kAgreed: Agreed = {
   sentModel: true,
   backups: true,
   newAccount: true,
+  groupRules: true,
   classImport: true,
   changedAccounts: true,
   newPassword: true,
@@ -131,4 +145,6 @@ export const kAgreed: Agreed = {
   metrics: true,
   plans: true,
   analysisRun: true,
+  analysis: true,
+  lockedPlan: true,
 };

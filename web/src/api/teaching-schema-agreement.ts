@@ -21,7 +21,9 @@ import type {
   plannedTractSchema,
   referenceListSchema,
   referenceWaySchema,
+  caseManifestSchema,
   scenarioCheckSchema,
+  scenarioFileSchema,
   scenarioListSchema,
   sourceVolumeListSchema,
 } from './teaching-schemas';
@@ -35,6 +37,8 @@ export interface TeachingAgreed {
   readonly tract: Takes<typeof plannedTractSchema, Served['PlannedTract']>;
   readonly certificate: Takes<typeof plannedCertificateSchema, Served['PlannedCertificate']>;
   readonly scenarios: Takes<typeof scenarioListSchema, Served['ScenarioVersions']>;
+  readonly scenario: Takes<typeof scenarioFileSchema, Served['ScenarioFile']>;
+  readonly manifest: Takes<typeof caseManifestSchema, Served['CaseManifest']>;
   readonly check: Takes<typeof scenarioCheckSchema, Served['ScenarioCheck']>;
   readonly assignments: Takes<typeof assignmentListSchema, Served['Assignments']>;
   readonly released: Takes<typeof releasedAssignmentsSchema, Served['ReleasedAssignments']>;
@@ -61,6 +65,8 @@ export const kTeachingAgreed: TeachingAgreed = {
   tract: true,
   certificate: true,
   scenarios: true,
+  scenario: true,
+  manifest: true,
   check: true,
   assignments: true,
   released: true,

@@ -67,6 +67,8 @@ export const wallCertificateSchema = v.object({
   k: dPrime,
   b: dPrime,
   fa: dPrime,
+  /** Share of right answers that a hand is foretold; absent in certificates of before. */
+  foretold: v.optional(finite),
   end_force_N: v.nullable(finite),
   why_not: v.nullable(v.string()),
   places: v.optional(v.object({ at_m: v.array(finite), k: v.array(dPrime), b: v.array(dPrime), fa: v.array(dPrime) })),
