@@ -17,6 +17,7 @@ export { Select } from './select';
 export { Shell } from './shell';
 export { Skeleton } from './skeleton';
 export { Steps, type StepPlace } from './steps';
+export { TabbedPage, type PageTab } from './tabbed-page';
 export { Table, type Column } from './table';
 export { Term } from './term';
 export { setTheme, theme, usePalette, useTheme, type Theme } from './theme';

@@ -6,6 +6,7 @@ import {
   kSpeed,
   kTime,
   kTorque,
+  share,
   type Metre,
   type Newton,
   type NewtonMetre,
@@ -155,6 +156,22 @@ export function measureDigits(value: number | null, unit: string): string {
   if (value === null || !Number.isFinite(value)) return kNone;
   const known = kMeasures[unit];
   return known ? digits(value, known) : plain(value);
+}
+
+/** Writes shares as percentages, a judged answer as a word, other values with their unit. */
+export function formatScore({
+  value,
+  unit,
+  shown_as,
+}: {
+  readonly value: number | null;
+  readonly unit: string;
+  readonly shown_as: 'number' | 'share' | 'correct_or_incorrect';
+}): string {
+  if (value === null) return kNone;
+  if (shown_as === 'correct_or_incorrect') return value === 1 ? 'correct' : 'incorrect';
+  if (shown_as === 'share') return formatShare(share(value), value > 0 && value < 0.01 ? 3 : 0);
+  return formatMeasure(value, unit);
 }
 
 /** The unit that `formatMeasure` shows for a unit of the server's. */

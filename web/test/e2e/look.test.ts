@@ -105,6 +105,15 @@ async function programme(page: Page, check: Check): Promise<void> {
     await page.waitForLoadState('networkidle');
     await check(`network-${place}`);
   }
+  await page.goto('/account/tokens');
+  await page.getByRole('group', { name: /^Scopes/ }).waitFor();
+  await check('account-tokens');
+  await page.goto('/network/tokens');
+  await page.getByRole('heading', { name: 'Valid tokens' }).waitFor();
+  await check('network-tokens');
+  await page.goto('/guide/scripts');
+  await page.getByRole('heading', { name: 'curl' }).waitFor();
+  await check('guide-scripts');
   await page.goto('/network/stations');
   await page.locator('tbody a').nth(2).click();
   await page.getByRole('heading', { name: 'Status' }).or(page.getByText('could not be loaded')).waitFor();

@@ -30,9 +30,13 @@ it.runIf(inject('fixture'))('no page is wider than a screen of 390 px', async ()
     '/network/cohorts',
     '/network/stations',
     '/network/backups',
+    '/network/retention',
     '/network/audit',
     '/guide/faculty',
     '/account',
+    '/account/tokens',
+    '/network/tokens',
+    '/guide/scripts',
   ]) {
     await page.goto(address);
     await page.waitForLoadState('networkidle');

@@ -79,7 +79,7 @@ export function requestOf(draft: Draft): NewAssignment {
     cases: draft.chosen.map(({ case_id, tuned, blind }) => ({
       ...(case_id === undefined ? { scenario: { tuned: tuned ?? '' } } : { case: case_id }),
       ...(blind.trim() === '' ? {} : { name: blind.trim() }),
-    })),
+    })) as NonNullable<NewAssignment['cases']>, // the server checks the names of scenarios
     ...(draft.cohort === '' ? {} : { cohort: draft.cohort }),
     ...(draft.people.length === 0 ? {} : { people: [...draft.people] }),
     ordering: draft.ordering,

@@ -47,7 +47,7 @@ export function TrialsTable({ one, may, own = false, onInvalid }: Props) {
       caption="Trials"
       rows={one.trials}
       keyOf={({ trial_id }) => trial_id}
-      empty="No trials have been uploaded yet."
+      empty={`No trials have been uploaded yet${own ? '' : ', or all are being rated blind'}.`}
       minWidth={own ? 480 : 680}
       {...(own ? {} : { filter: { label: 'Filter by trainee', text: whose } })}
       columns={[

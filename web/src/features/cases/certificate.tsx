@@ -12,11 +12,13 @@ import {
 } from '@/api';
 import { kSides, WallBands, type SideBands } from '@/charts';
 import { Badge, Button, Card, Notice, Skeleton, Table } from '@/ui';
-import { formatFigure, formatLength, kNone, type Metre } from '@/units';
+import { formatFigure, formatLength, formatShare, kNone, share, type Metre } from '@/units';
 import styles from './cases.module.css';
 
 /** The d′ that a side wall must reach, as the server's certificate has it. */
 const kLeastSide = 2.5;
+/** The share of right answers that it must be foretold, as the server has it. */
+const kLeastForetold_percent = 75;
 
 /** The lesser of K and B; K of the end. */
 const dPrimeOf = (k: number | null, b: number | null) => (k === null ? b : b === null ? k : Math.min(k, b));
@@ -76,12 +78,18 @@ export function CertificateView({
           { name: 'K', cell: ({ k }) => number(k), number: true },
           { name: 'B', cell: ({ b }) => number(b), number: true },
           { name: 'FA', cell: ({ fa }) => number(fa), number: true },
+          {
+            name: 'Right',
+            cell: ({ foretold }) => (foretold === undefined ? kNone : formatShare(share(foretold))),
+            number: true,
+          },
         ]}
       />
       <p className={styles.muted}>
         K: d′ of the breach against the same place when it is whole. B: against all other places of this tract. FA: of
         the whole place that feels most like a breach. A side wall needs K and B of {kLeastSide} and B at least 0.5 over
-        FA; the end needs K of 2. Upper bounds, of an ideal observer.
+        FA; the end needs K of 2. Upper bounds, of an ideal observer. Right: the share of right answers that is foretold
+        of a hand which presses with the tip; a wall needs {kLeastForetold_percent} %.
       </p>
     </div>
   );

@@ -20,7 +20,7 @@ function Sheet({ of }: { readonly of: CurriculumPerson }) {
         {of.passed_utc_us === null ? '–' : formatDate(of.passed_utc_us)}.
       </p>
       {of.simulated ? <p className={styles.simulated}>Some of these trials were done by a simulated hand.</p> : null}
-      <h2>What it rests on</h2>
+      <h2>Evidence</h2>
       <ol className={styles.steps}>
         {of.steps.map(({ id, name, requirements, rests_on }) => (
           <li key={id}>

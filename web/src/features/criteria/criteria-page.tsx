@@ -63,7 +63,7 @@ function Stating({ entries }: { readonly entries: readonly CriteriaEntry[] }) {
         ? 'Add a requirement.'
         : (requirements.map(requirementProblem).find((one) => one !== '') ?? '');
   return (
-    <Card title="State criteria">
+    <Card title="Set criteria">
       <div className={styles.stack}>
         <div className={styles.form}>
           <Select
@@ -140,7 +140,7 @@ export function CriteriaPage() {
   return (
     <Frame
       at="/criteria"
-      lead="What passing is. A trainee who has begun stays with the version that held then; a new version is for those to come."
+      lead="Requirements for passing. A trainee who has begun keeps the version that was valid then; a new version applies to those who begin later."
     >
       {query.isError ? (
         <Notice tone="bad" title="The criteria could not be loaded." onRetry={() => void query.refetch()}>
@@ -150,7 +150,7 @@ export function CriteriaPage() {
       <Card title="Criteria">
         <div className={styles.stack}>
           {query.data && !stated ? (
-            <Notice title="Where none are stated, these hold:">
+            <Notice title="Default criteria, where none are set:">
               <Requirements of={query.data.usual} />
             </Notice>
           ) : null}

@@ -13,7 +13,7 @@ export function CurriculaPage() {
   return (
     <Frame
       at="/curricula"
-      lead="Ordered steps, each with its cases and with what passing it is. Stations offer a step when the steps before it are passed."
+      lead="Ordered steps, each with its cases and its criteria. Stations offer a step when the steps before it are passed."
     >
       {query.isError ? (
         <Notice tone="bad" title="The curricula could not be loaded." onRetry={() => void query.refetch()}>

@@ -237,7 +237,7 @@ export function CurriculumEditor({ id }: { readonly id?: string }) {
         <h1>{heading}</h1>
         {id === undefined ? null : (
           <p className={styles.lead}>
-            This makes a new version for those to come. Who has begun stays with the version they began with.
+            This makes a new version for trainees who begin later. A trainee who has begun keeps their version.
           </p>
         )}
       </div>

@@ -92,8 +92,8 @@ function Give({ id }: { readonly id: string }) {
           ]}
         />
         <p className={styles.muted}>
-          Makes an assignment of each step. Also those who join the cohort later get the newest version that it was
-          given.
+          Makes an assignment of each step. A trainee who joins the cohort later gets the newest version that the cohort
+          was given.
         </p>
         {given.isError ? (
           <Notice tone="bad" title="The curriculum was not given.">

@@ -75,7 +75,7 @@ it('asks for a step’s name, its cases and its criteria', () => {
     ],
   };
   expect(stepProblem(full)).toBe('');
-  expect(stepProblem({ ...full, requirements: [] })).toContain('passing');
+  expect(stepProblem({ ...full, requirements: [] })).toContain('criteria');
   expect(curriculumRequest('q', ' Year 1 ', '', [full], inMetres)).toMatchObject({
     id: 'q',
     title: 'Year 1',

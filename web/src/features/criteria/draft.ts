@@ -154,7 +154,7 @@ export function stepProblem(step: StepDraft): string {
   if (step.name.trim() === '') return 'Name the step.';
   if (step.cases.length === 0) return 'Choose at least one case.';
   if (!isCount(step.repeats) || Number(step.repeats) > 20) return 'Enter 1 to 20 trials of each case.';
-  if (step.requirements.length === 0) return 'Add what passing the step is.';
+  if (step.requirements.length === 0) return 'Add the criteria of the step.';
   return step.requirements.map(requirementProblem).find((wrong) => wrong !== '') ?? '';
 }
 
@@ -175,7 +175,7 @@ export function curriculumRequest(
       cases: step.cases.map(({ key }) => {
         const name = key.slice(key.indexOf(' ') + 1);
         return key.startsWith('tuned ') ? { scenario: { tuned: name } } : { case: name };
-      }),
+      }) as NewCurriculum['steps'][number]['cases'], // the server checks the names of scenarios
       repeats: Number(step.repeats),
       after: [...step.after],
       criteria: { ...criteriaOf(step.requirements.map((one) => requestOf(one, unitOf))) },

@@ -1,15 +1,13 @@
 import type { ReactNode } from 'react';
-import { Link } from 'wouter';
-import { useTitle } from '@/ui';
-import styles from './criteria.module.css';
+import { TabbedPage } from '@/ui';
 
 const kTabs = [
   { to: '/curricula', name: 'Curricula' },
   { to: '/criteria', name: 'Criteria' },
 ] as const;
 
-/** What stands round the lists of curricula and criteria. */
-export function Frame({
+/** What the lists of curricula and criteria have in common. */
+export const Frame = ({
   at,
   lead,
   children,
@@ -17,23 +15,8 @@ export function Frame({
   readonly at: (typeof kTabs)[number]['to'];
   readonly lead: string;
   readonly children: ReactNode;
-}) {
-  const here = kTabs.find(({ to }) => to === at)?.name ?? '';
-  useTitle(here);
-  return (
-    <div className={styles.page}>
-      <div>
-        <h1>{here}</h1>
-        <p className={styles.lead}>{lead}</p>
-      </div>
-      <nav aria-label="Passing" className={styles.tabs}>
-        {kTabs.map(({ to, name }) => (
-          <Link key={to} href={to} aria-current={to === at ? 'page' : undefined}>
-            {name}
-          </Link>
-        ))}
-      </nav>
-      {children}
-    </div>
-  );
-}
+}) => (
+  <TabbedPage tabs={kTabs} at={at} label="Passing" lead={lead}>
+    {children}
+  </TabbedPage>
+);

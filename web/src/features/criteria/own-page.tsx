@@ -47,7 +47,7 @@ export function OwnCurriculaPage() {
     <div className={styles.page}>
       <div>
         <h1>My curriculum</h1>
-        <p className={styles.lead}>The steps of your training, and what passing each of them is.</p>
+        <p className={styles.lead}>The steps of your training, and the criteria of each.</p>
       </div>
       {query.isError ? (
         <Notice tone="bad" title="Your curriculum could not be loaded." onRetry={() => void query.refetch()}>

@@ -42,13 +42,13 @@ function MetricFields({ draft, change }: { readonly draft: RequirementDraft; rea
           onChange={(event) => change({ bound: event.target.value, basis: '' })}
         />
         <Field
-          label="In how many trials"
+          label="Trials that must meet it"
           inputMode="numeric"
           value={draft.times}
           onChange={(event) => change({ times: event.target.value })}
         />
         <Field
-          label="Of the last (empty: all)"
+          label="Among the last trials (empty: all)"
           inputMode="numeric"
           value={draft.last}
           onChange={(event) => change({ last: event.target.value })}
@@ -86,13 +86,13 @@ function RecognitionFields({ draft, change }: { readonly draft: RequirementDraft
         onChange={(event) => change({ share: event.target.value })}
       />
       <Field
-        label="By the low end of the interval of, %"
+        label="Confidence level of the interval, %"
         inputMode="decimal"
         value={draft.level}
         onChange={(event) => change({ level: event.target.value })}
       />
       <Field
-        label="Of the last answers (empty: all)"
+        label="Among the last answers (empty: all)"
         inputMode="numeric"
         value={draft.last}
         onChange={(event) => change({ last: event.target.value })}

@@ -9,7 +9,9 @@ const index = () => import('./index');
 const AuditPage = lazy(() => index().then(({ AuditPage: page }) => ({ default: page })));
 const BackupsPage = lazy(() => index().then(({ BackupsPage: page }) => ({ default: page })));
 const CohortsPage = lazy(() => index().then(({ CohortsPage: page }) => ({ default: page })));
+const LeavingPage = lazy(() => index().then(({ LeavingPage: page }) => ({ default: page })));
 const PeoplePage = lazy(() => index().then(({ PeoplePage: page }) => ({ default: page })));
+const RetentionPage = lazy(() => index().then(({ RetentionPage: page }) => ({ default: page })));
 const StationPage = lazy(() => index().then(({ StationPage: page }) => ({ default: page })));
 const StationsPage = lazy(() => index().then(({ StationsPage: page }) => ({ default: page })));
 
@@ -26,6 +28,8 @@ export const feature: Feature = {
   pages: [
     { path: '/network', show: () => <FirstPage /> },
     { path: '/network/people', show: () => <PeoplePage /> },
+    { path: '/network/people/:id/leaving', show: (at) => <LeavingPage key={at('id')} id={at('id')} /> },
+    { path: '/network/retention', show: () => <RetentionPage /> },
     { path: '/network/cohorts', show: () => <CohortsPage /> },
     { path: '/network/stations', show: () => <StationsPage /> },
     { path: '/network/stations/:id', show: (at) => <StationPage key={at('id')} id={at('id')} /> },

@@ -113,6 +113,8 @@ export function PeoplePage() {
       <p className={styles.ways}>
         <Link href="/class">Import a class from a spreadsheet</Link>
         <Link href="/class/change">Change many accounts at once</Link>
+        <Link href="/network/tokens">API tokens of all accounts</Link>
+        <Link href="/network/mail">Mail and webhooks</Link>
       </p>
       <NewAccountCard />
       <Card title="Accounts">
@@ -194,6 +196,12 @@ export function PeoplePage() {
                   >
                     {one.state === 'active' ? 'Disable' : 'Enable'}
                   </Button>
+                  <Link
+                    href={`/network/people/${encodeURIComponent(one.id)}/leaving`}
+                    aria-label={`Erase or anonymise ${one.name}`}
+                  >
+                    Erase…
+                  </Link>
                 </span>
               ),
             },

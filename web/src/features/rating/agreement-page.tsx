@@ -69,7 +69,7 @@ export function AgreementPage() {
   return (
     <Frame
       at="/ratings/agreement"
-      lead="Agreement of those who rated the same trials: two-way random intraclass correlations for absolute agreement (Shrout and Fleiss 1979) with 95 % intervals, and Cohen’s kappa weighted by the squares of the differences. Of trials that you may see and that all have rated."
+      lead="Agreement of people who rated the same trials: two-way random intraclass correlations for absolute agreement (Shrout and Fleiss 1979) with 95 % intervals, and Cohen’s kappa weighted by the squares of the differences. Includes the trials that you may see and that all their raters have rated."
     >
       {failed ? (
         <Notice
@@ -95,7 +95,7 @@ export function AgreementPage() {
       ) : null}
       {rubrics.data && all.length === 0 ? <p>No rubrics yet.</p> : null}
       {query.data?.groups.length === 0 ? (
-        <p>No trial was rated by two people or more by this rubric yet.</p>
+        <p>No trial has been rated by two or more people with this rubric yet.</p>
       ) : (
         query.data?.groups.map((group) => <Group key={group.raters.join(' ')} of={group} />)
       )}

@@ -22,7 +22,7 @@ export function RatingsPage() {
   return (
     <Frame
       at="/ratings"
-      lead="Trials that people rate. Open a trial to rate it; nobody sees another’s rating before all have rated. To have another trial rated, open its debriefing."
+      lead="Trials that you are asked to rate. Open a trial to rate it; ratings stay hidden until every rater has finished. To request ratings of another trial, open its debriefing."
     >
       {query.isError ? (
         <Notice tone="bad" title="The list could not be loaded." onRetry={() => void query.refetch()}>

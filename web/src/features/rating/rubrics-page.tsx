@@ -18,7 +18,7 @@ export function RubricsPage() {
   return (
     <Frame
       at="/ratings/rubrics"
-      lead="By what people rate trials: items with points, described at both ends. A change is a new version; what was rated by an earlier one stays with it."
+      lead="Forms for rating trials: items with points, described at both ends. A change makes a new version; earlier ratings keep theirs."
     >
       {query.isError ? (
         <Notice tone="bad" title="The rubrics could not be loaded." onRetry={() => void query.refetch()}>

@@ -1,6 +1,7 @@
 import { useMutation } from '@tanstack/react-query';
 import { useState, type FormEvent } from 'react';
-import { beginCodes, confirmCodes, endCodes } from '@/api';
+import { Link } from 'wouter';
+import { beginCodes, confirmCodes, endCodes, ownDataAddress } from '@/api';
 import { Button, Card, Field, Notice, useTitle } from '@/ui';
 import styles from './own-account.module.css';
 import { PasswordForm } from './password-form';
@@ -94,11 +95,33 @@ export function OwnAccountPage() {
   return (
     <div className={styles.page}>
       <h1>My account</h1>
+      <nav aria-label="My account" className={styles.ways}>
+        <Link href="/account/tokens">API tokens</Link>
+        <Link href="/account/notifications">Notifications</Link>
+      </nav>
       <Card title="Password">
         <PasswordForm />
       </Card>
       <Card title="One-time codes">
         <Codes />
+      </Card>
+      <Card title="My data">
+        <div className={styles.stack}>
+          <p>
+            One zip file with what this server holds of you: account, consents, assignments, your trials with their
+            recordings, scores, comments and ratings, certificates and sign-ins. Its README.txt says what each file is.
+            Trials whose results are not released yet are not in it. The download is recorded in the audit trail.
+          </p>
+          <p>
+            <a href={ownDataAddress} download>
+              Download my data
+            </a>
+          </p>
+          <p>
+            To leave, ask an administrator: they can erase your account with your trials, or keep your trials without
+            your name.
+          </p>
+        </div>
       </Card>
     </div>
   );

@@ -111,7 +111,7 @@ export function studyOf(draft: Draft): { study: NewStudy } | { faults: string[] 
     study: {
       id,
       title: draft.title.trim(),
-      scenarios,
+      scenarios: scenarios as NewStudy['scenarios'], // files of people: the server checks them
       repeats,
       ordering: draft.ordering,
       on_invalid: draft.onInvalid,

@@ -1,6 +1,6 @@
 /** Lays the metrics out as the server describes them: in the table of statistics, or one by one. */
 import type { Metric } from '@/api';
-import { formatMeasure, formatShare, kNone, share } from '@/units';
+import { formatScore } from '@/units';
 
 export interface TableRow {
   readonly label: string;
@@ -35,10 +35,4 @@ export function arranged(metrics: readonly Metric[]): Arranged {
   return { statistics, rows, others: metrics.filter((metric) => !metric.cell) };
 }
 
-/** Writes shares as percentages, a judged answer as a word, other values with their unit. */
-export function shown({ value, unit, shown_as }: Metric): string {
-  if (value === null) return kNone;
-  if (shown_as === 'correct_or_incorrect') return value === 1 ? 'correct' : 'incorrect';
-  if (shown_as === 'share') return formatShare(share(value), value > 0 && value < 0.01 ? 3 : 0);
-  return formatMeasure(value, unit);
-}
+export const shown = (metric: Metric): string => formatScore(metric);

@@ -52,7 +52,7 @@ describe.skipIf(bin === undefined)('the first days of a programme', () => {
     await admin.goto('/class');
     await admin.getByLabel('Cohort', { exact: true }).selectOption('a new cohort…');
     await admin.getByLabel('Name of the new cohort').fill('Residents 2027');
-    await admin.getByLabel('Level, where a row names none (optional)').fill('PGY-2');
+    await admin.getByLabel('Level for rows without one (optional)').fill('PGY-2');
     const list = admin.getByLabel('Or paste the list; the first line names the columns');
     await list.fill(kList.replace(kPin, '12'));
     await admin.getByText('PIN: 4 to 12 digits are expected').or(admin.getByText('4 to 12 digits')).first().waitFor();
@@ -111,7 +111,7 @@ describe.skipIf(bin === undefined)('the first days of a programme', () => {
     await admin.getByRole('button', { name: 'Add: Bound on a metric' }).nth(1).click();
     await admin.getByLabel('Metric').selectOption('Probing time');
     await admin.getByLabel('Bound, s').fill('600');
-    await admin.getByLabel('In how many trials').fill('1');
+    await admin.getByLabel('Trials that must meet it').fill('1');
     await look(admin, 'curriculum-editor');
     await admin.getByRole('button', { name: 'Make the curriculum' }).click();
     await admin.getByRole('heading', { name: 'Pedicle screws, year 1' }).waitFor();
@@ -155,7 +155,7 @@ describe.skipIf(bin === undefined)('the first days of a programme', () => {
 
   it('states criteria of the programme with its own failure rates, in versions', async () => {
     await admin.goto('/criteria');
-    await admin.getByText('Where none are stated, these hold:').waitFor();
+    await admin.getByText('Default criteria, where none are set:').waitFor();
     await admin.getByLabel('Of', { exact: true }).selectOption('Whole programme');
     await admin.getByRole('button', { name: 'Remove requirement 1' }).click();
     await admin.getByRole('button', { name: 'Add: Competence by LC-CUSUM' }).click();
