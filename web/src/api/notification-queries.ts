@@ -46,7 +46,8 @@ export const outboxSchema = v.object({
   ),
 });
 export type Webhook = v.InferOutput<typeof webhookSchema>;
-export type OutboxDelivery = v.InferOutput<typeof outboxSchema>['deliveries'][number];
+export type Outbox = v.InferOutput<typeof outboxSchema>;
+export type OutboxDelivery = Outbox['deliveries'][number];
 export type OwnNotifications = v.InferOutput<typeof ownNotificationsSchema>;
 
 export const ownNotificationsQuery = queryOptions({

@@ -111,6 +111,18 @@ async function programme(page: Page, check: Check): Promise<void> {
   await page.goto('/network/tokens');
   await page.getByRole('heading', { name: 'Valid tokens' }).waitFor();
   await check('network-tokens');
+  await page.goto('/account/notifications');
+  await page.getByRole('button', { name: 'Send a test' }).waitFor();
+  await check('account-notifications');
+  await page.goto('/network/mail');
+  await page.getByRole('heading', { name: 'Deliveries' }).waitFor();
+  await check('network-mail');
+  await page.goto('/network/retention');
+  await page.getByRole('heading', { name: 'Rules now' }).waitFor();
+  await check('network-retention');
+  await page.goto('/class/groups');
+  await page.getByRole('button', { name: 'Add a line' }).click();
+  await check('class-groups');
   await page.goto('/guide/scripts');
   await page.getByRole('heading', { name: 'curl' }).waitFor();
   await check('guide-scripts');

@@ -78,7 +78,7 @@ function NewWebhook() {
 }
 
 /** Webhooks: added, tested, removed. */
-export function WebhooksCard({ webhooks }: { readonly webhooks: readonly Webhook[] | undefined }) {
+export function WebhooksCard({ webhooks }: { readonly webhooks: readonly Webhook[] }) {
   const client = useQueryClient();
   const fresh = () => client.invalidateQueries({ queryKey: outboxQuery.queryKey });
   const [asked, setAsked] = useState<Webhook | null>(null);

@@ -24,10 +24,14 @@ export function OwnTokensPage() {
           {query.error.message}
         </Notice>
       ) : null}
-      {query.data ? <NewToken offered={query.data.scopes} /> : null}
-      <Card title="Your tokens">
-        <TokenTable tokens={query.data?.tokens} empty="You have no tokens." />
-      </Card>
+      {query.data ? ( // both cards at once, so that neither pushes the other down
+        <>
+          <NewToken offered={query.data.scopes} />
+          <Card title="Your tokens">
+            <TokenTable tokens={query.data.tokens} empty="You have no tokens." />
+          </Card>
+        </>
+      ) : null}
     </div>
   );
 }
