@@ -1,11 +1,14 @@
 #!/usr/bin/env python3
 """Counts a JUnit report and keeps what failed in it.
 
-    deploy/junit.py WORDS REPORT FAILURES
+    deploy/junit.py WORDS REPORT FAILURES [PROGRAMS]
 
 Prints "PASSED FAILED". The name of each failed test and the end of what it printed are appended to FAILURES, under WORDS.
-A report that is missing, broken or empty is one failure, and says so there.
+A test of REPORT that is a whole program counts by its cases, if it wrote PROGRAMS/<its name>.xml. A program that failed
+although each of its cases passed (it crashed at its end) is one more failure. A report that is missing, broken or empty is
+one failure, and says so there.
 """
+import os
 import re
 import sys
 import xml.etree.ElementTree as ElementTree
@@ -21,10 +24,8 @@ def told(case):
     return "\n".join("   " + line for line in lines[-LAST_LINES:])[-LAST_CHARACTERS:]
 
 
-def failed_cases(root):
-    for case in root.iter("testcase"):
-        if case.find("failure") is not None or case.find("error") is not None or case.get("status") == "fail":
-            yield case
+def failed(case):
+    return case.find("failure") is not None or case.find("error") is not None or case.get("status") == "fail"
 
 
 def count(root):
@@ -33,12 +34,31 @@ def count(root):
     return number["tests"] - bad - number["skipped"] - number["disabled"], bad
 
 
-def main(words, report, failures):
+def with_programs(root, programs):
+    """Passed, failed, and the failed cases, of the report and of the programs that wrote their own."""
+    passed, bad = count(root)
+    faults = []
+    for case in root.iter("testcase"):
+        path = os.path.join(programs, f"{case.get('name')}.xml") if programs else ""
+        if not os.path.exists(path):
+            faults += [case] if failed(case) else []
+            continue
+        own = list(ElementTree.parse(path).getroot().iter("testcase"))
+        own_faults = [one for one in own if failed(one)]
+        own_passed = sum(one.get("result") == "completed" for one in own) - len(own_faults)
+        if failed(case) and not own_faults:
+            own_faults = [case]
+        passed, bad = passed + own_passed - (not failed(case)), bad + len(own_faults) - failed(case)
+        faults += own_faults
+    return passed, bad, faults
+
+
+def main(words, report, failures, programs=None):
+    faults, note = [], ""
     try:
-        root = ElementTree.parse(report).getroot()
-        passed, bad = count(root)
+        passed, bad, faults = with_programs(ElementTree.parse(report).getroot(), programs)
     except (OSError, ElementTree.ParseError, ValueError) as error:
-        root, passed, bad = None, 0, 1
+        passed, bad = 0, 1
         note = f"{words}: no report to read ({error})"
     else:
         note = "" if passed + bad else f"{words}: the report holds no test"
@@ -46,12 +66,12 @@ def main(words, report, failures):
     with open(failures, "a", encoding="utf-8") as out:
         if note:
             out.write(f"FAILED: {note}\n")
-        for case in failed_cases(root) if root is not None else ():
+        for case in faults:
             out.write(f"FAILED: {words}: {case.get('classname') or ''} {case.get('name')}\n{told(case)}\n")
     print(passed, bad)
 
 
 if __name__ == "__main__":
-    if len(sys.argv) != 4:
+    if len(sys.argv) not in (4, 5):
         sys.exit(__doc__.strip())
     main(*sys.argv[1:])

@@ -96,6 +96,7 @@ endfunction()
 
 # A gtest program of its own, for tests that span folders: tractus_add_test(name SOURCES … DEPS … [LABELS slow] [TIMEOUT s])
 # BOTH_DATABASES: those of its tests that run on PostgreSQL (PostgreSQL/*) are one test of ctest, so that they share one server.
+# Cases of unit tests (LABELS unit) are one test of ctest too.
 function(tractus_add_test name)
   cmake_parse_arguments(ARG "BOTH_DATABASES" "TIMEOUT" "SOURCES;DEPS;LABELS" ${ARGN})
   if(NOT ARG_TIMEOUT)
@@ -119,21 +120,30 @@ function(tractus_add_test name)
   endforeach()
   set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/tests)
   tractus_compile(${name} test)
-  set(filter "")
+  set(filter "*")
   if(ARG_BOTH_DATABASES)
-    set(filter TEST_FILTER "-PostgreSQL/*")
-    add_test(NAME ${name}_on_postgresql COMMAND ${name} --gtest_filter=PostgreSQL/*)
-    set_tests_properties(${name}_on_postgresql PROPERTIES TIMEOUT 900 LABELS "${ARG_LABELS}")
+    set(filter "-PostgreSQL/*")
+    tractus_ctest(${name}_on_postgresql ${name} "PostgreSQL/*" 900 "${ARG_LABELS}")
   endif()
-  gtest_discover_tests(${name} DISCOVERY_MODE PRE_TEST DISCOVERY_TIMEOUT 60 ${filter}
-    PROPERTIES TIMEOUT ${ARG_TIMEOUT} LABELS "${ARG_LABELS}")
+  if("unit" IN_LIST ARG_LABELS)
+    tractus_ctest(${name} ${name} "${filter}" 600 "${ARG_LABELS}")
+  else()
+    gtest_discover_tests(${name} DISCOVERY_MODE PRE_TEST DISCOVERY_TIMEOUT 60 TEST_FILTER "${filter}"
+      PROPERTIES TIMEOUT ${ARG_TIMEOUT} LABELS "${ARG_LABELS}")
+  endif()
+endfunction()
+
+# One test of ctest for all cases of a program, for starting a program costs more than most cases. Its report names each case
+# (deploy/junit.py counts them).
+function(tractus_ctest test program filter timeout_s labels)
+  add_test(NAME ${test} COMMAND ${program} --gtest_filter=${filter} --gtest_output=xml:${CMAKE_BINARY_DIR}/reports/${test}.xml)
+  set_tests_properties(${test} PROPERTIES TIMEOUT ${timeout_s} LABELS "${labels}" ${ARGN})
 endfunction()
 
 # The whole program once more, as one test, with its servers' records in PostgreSQL (tests/support/database).
 function(tractus_again_on_postgresql name)
   if(TRACTUS_TESTS)
-    add_test(NAME ${name}_on_postgresql COMMAND ${name})
-    set_tests_properties(${name}_on_postgresql PROPERTIES TIMEOUT 1200 LABELS slow ENVIRONMENT TRACTUS_TEST_DATABASE=postgresql)
+    tractus_ctest(${name}_on_postgresql ${name} "*" 1200 slow ENVIRONMENT TRACTUS_TEST_DATABASE=postgresql)
   endif()
 endfunction()
 
