@@ -1,16 +1,14 @@
 /** Pictures of the pages of teaching: cases, assignments, debrief, scenarios; and axe-core's rules on each. */
 import type { Browser, Page } from 'playwright-core';
 import { afterAll, beforeAll, describe, expect, it } from 'vitest';
-import { accessibilityFaults } from './axe';
-import { asked, assessedTrial, kShots, launch, signIn, visit } from './browser';
+import { asked, assessedTrial, launch, signIn, visit } from './browser';
+import { checker, kLooks, type Check } from './looks';
 
 let browser: Browser;
 beforeAll(async () => {
   browser = await launch();
 });
 afterAll(() => browser.close());
-
-type Check = (name: string) => Promise<void>;
 
 async function still(page: Page): Promise<void> {
   await page.waitForLoadState('networkidle');
@@ -102,24 +100,11 @@ async function scenarios(page: Page, check: Check): Promise<void> {
   await check('scenario-wrong');
 }
 
-describe.each([
-  { width: 1440, dark: false },
-  { width: 1440, dark: true },
-  { width: 800, dark: false },
-  { width: 800, dark: true },
-])('at $width px, dark: $dark', ({ width, dark }) => {
+describe.each(kLooks)('at $width px, first dark: $dark', (look) => {
   it('the pages of teaching can be used without sight, fit the screen and break no policy', async () => {
-    const { context, page, faults } = await visit(browser, { width, dark });
+    const { context, page, faults } = await visit(browser, look);
     page.setDefaultTimeout(90_000);
-    const suffix = `${width}-${dark ? 'dark' : 'light'}`;
-    const check: Check = async (name) => {
-      await page.screenshot({ path: `${kShots}teaching-${name}-${suffix}.png`, fullPage: true });
-      expect(await accessibilityFaults(page), name).toEqual([]);
-      const overflow = await page.evaluate(
-        () => document.documentElement.scrollWidth - document.documentElement.clientWidth,
-      );
-      expect(overflow, `${name}: pixels wider than the screen`).toBeLessThanOrEqual(0);
-    };
+    const check = checker(page, look, 'teaching-');
     await signIn(page);
     const { volumes } = await asked<{ volumes: { id: string; state: string }[] }>(page, '/volumes');
     const volume = volumes.find(({ state }) => state === 'released');
