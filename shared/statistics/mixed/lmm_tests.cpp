@@ -1,7 +1,6 @@
 #include "statistics/mixed/lmm_tests.hpp"
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <cmath>
 
 #include "statistics/distributions/distributions.hpp"
@@ -12,30 +11,6 @@ namespace {
 
 Matrix adjusted_covariance(const Lmm& fit) {
   return fit.covariance + 2.0 * fit.covariance * fit.curvature.bias * fit.covariance;
-}
-
-JointTest satterthwaite(const Lmm& fit, const std::vector<Eigen::Index>& columns) {
-  const Vector b = fit.coefficients(columns);
-  // Directions are those of the covariance as it stands, so that a contrast's unit counts as in the
-  // source.
-  const Eigen::SelfAdjointEigenSolver<Matrix> eigen(Matrix(fit.covariance(columns, columns)));
-  const double q = static_cast<double>(columns.size());
-  double squares = 0.0, expectation = 0.0;
-  for (Eigen::Index m = 0; m < b.size(); ++m) {
-    const Vector direction = eigen.eigenvectors().col(m);
-    const double d = eigen.eigenvalues()[m];
-    squares += std::pow(direction.dot(b), 2) / d;
-    Vector contrast = Vector::Zero(fit.coefficients.size());
-    contrast(columns) = direction;
-    const double nu = satterthwaite_df(fit, contrast);
-    if (columns.size() == 1) return {squares, 1.0, nu, f_upper(squares, 1.0, nu)};
-    if (nu > 2.0) expectation += nu / (nu - 2.0);
-  }
-  JointTest out{squares / q, q, 0.0, 0.0};
-  // Fewer directions than coefficients with an expectation: no more can be said than 2 df.
-  out.df2 = expectation > q ? 2.0 * expectation / (expectation - q) : 2.0;
-  out.p = f_upper(out.statistic, out.df1, out.df2);
-  return out;
 }
 
 /// λ and m of the scaled F, from A_1 and A_2 (Kenward & Roger 1997, section 2.3).
@@ -99,7 +74,10 @@ JointTest joint_test(const Lmm& fit, const std::vector<Eigen::Index>& columns, S
   core::require(!columns.empty(), "a joint test is of one coefficient or more");
   if (how == SmallSample::kenward_roger)
     return kenward_roger_of(fit, adjusted_covariance(fit), columns);
-  if (fit.tau_squared > 0.0) return satterthwaite(fit, columns);
+  if (fit.tau_squared > 0.0)
+    return joint_test_by_contrasts(
+        fit.coefficients, fit.covariance, columns,
+        [&](const Vector& contrast) { return satterthwaite_df(fit, contrast); });
   return joint_test(fit.coefficients, fit.covariance, columns, fit.df[columns[0]]);
 }
 

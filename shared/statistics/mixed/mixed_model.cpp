@@ -356,21 +356,8 @@ double mixed_df(const MixedModel& fit, const Vector& contrast) {
 }
 
 JointTest joint_test(const MixedModel& fit, const std::vector<Eigen::Index>& columns) {
-  core::require(!columns.empty(), "a joint test is of one coefficient or more");
-  const Vector b = fit.coefficients(columns);
-  const Eigen::SelfAdjointEigenSolver<Matrix> eigen(Matrix(fit.covariance(columns, columns)));
-  const double q = double(columns.size());
-  double squares = 0.0, expectation = 0.0, df = 0.0;
-  for (Eigen::Index m = 0; m < b.size(); ++m) {
-    const Vector direction = eigen.eigenvectors().col(m);
-    squares += std::pow(direction.dot(b), 2) / eigen.eigenvalues()[m];
-    Vector contrast = Vector::Zero(fit.coefficients.size());
-    contrast(columns) = direction;
-    df = mixed_df(fit, contrast);
-    if (df > 2.0) expectation += df / (df - 2.0);
-  }
-  if (columns.size() > 1) df = expectation > q ? 2.0 * expectation / (expectation - q) : 2.0;
-  return {squares / q, q, df, f_upper(squares / q, q, df)};
+  return joint_test_by_contrasts(fit.coefficients, fit.covariance, columns,
+                                 [&](const Vector& contrast) { return mixed_df(fit, contrast); });
 }
 
 }  // namespace statistics
