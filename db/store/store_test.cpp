@@ -222,7 +222,7 @@ TEST_P(MigrationSteps, ANewerDatabaseIsRefusedByNumber) {
   EXPECT_NE(refused.error().what.find("schema 2"), std::string::npos) << refused.error().what;
 }
 
-TEST_P(MigrationSteps, AStepThatBreaksLeavesTheDatabaseAtTheStepBefore) {
+TEST_P(MigrationSteps, AStepThatBreaksLeavesTheDatabaseAsItWas) {
   const TestDatabase database(GetParam(), Content::nothing);
   const auto connection = database.connection(Access::write);
   const Migration first{1, "first", "create table a (x bigint)"};
@@ -230,8 +230,25 @@ TEST_P(MigrationSteps, AStepThatBreaksLeavesTheDatabaseAtTheStepBefore) {
       *connection, {first, {2, "second", "create table b (x bigint); create table a (x bigint)"}});
   ASSERT_FALSE(broken);
   EXPECT_NE(broken.error().what.find("0002_second"), std::string::npos) << broken.error().what;
+  EXPECT_FALSE(connection->query("select x from a", {})) << "the step before was kept";
   ASSERT_TRUE(migrate(*connection, {first, {2, "second", "create table b (y bigint)"}}));
   EXPECT_TRUE(connection->query("select y from b", {}));
+}
+
+TEST_P(MigrationSteps, AreTriedWithoutAChange) {
+  const TestDatabase database(GetParam(), Content::nothing);
+  const auto connection = database.connection(Access::write);
+  const Migration first{1, "first", "create table a (x bigint)"};
+  const Migration second{2, "second", "create table b (x bigint)"};
+  ASSERT_TRUE(migrate(*connection, {first}));
+  const auto tried = try_migrations(*connection, {first, second});
+  ASSERT_TRUE(tried);
+  ASSERT_EQ(tried->size(), 1u);
+  EXPECT_EQ(tried->front().name, "second");
+  EXPECT_FALSE(connection->query("select x from b", {}));
+  EXPECT_FALSE(try_migrations(*connection, {first, {2, "second", "create table a (x bigint)"}}));
+  ASSERT_TRUE(migrate(*connection, {first, second}));
+  EXPECT_EQ(try_migrations(*connection, {first, second})->size(), 0u);
 }
 
 /// A database from before the column: an assignment is told by its row in `assignments`.

@@ -37,5 +37,6 @@ Run restore_command(CLI::App& command);
 Run verify_command(CLI::App& command);
 Run anchor_command(CLI::App& command);
 Run migrate_command(CLI::App& command);
+Run upgrade_command(CLI::App& command);
 
 }  // namespace tractus::app

@@ -73,6 +73,8 @@ constexpr Command kCommands[] = {
      "tractus-server anchor --data /srv/tractus", app::anchor_command},
     {"migrate", "Migrate the database to the schema of this program version",
      "tractus-server migrate --data /srv/tractus", app::migrate_command},
+    {"upgrade", "Say whether this program version can take over a data folder; changes nothing",
+     "tractus-server upgrade --check --data /srv/tractus", app::upgrade_command},
     {"openapi", "Print the description of the API in OpenAPI 3.1 format",
      "tractus-server openapi > openapi.json", app::openapi_command},
     {"import-volume", "", "tractus-server import-volume --upload FILE --folder FOLDER",

@@ -5,6 +5,7 @@
 #include <fstream>
 
 #include "core/bytes.hpp"
+#include "core/file.hpp"
 #include "tests/support/server/process.hpp"
 
 namespace tractus {
@@ -20,12 +21,34 @@ void expect_refused(const Ended& ended, const std::string& about) {
 
 TEST(Program, EveryCommandHelpsWithAnExample) {
   for (const char* command : {"init", "enrol", "publish", "serve", "openapi", "backup", "restore",
-                              "verify", "anchor", "migrate"}) {
+                              "verify", "anchor", "migrate", "upgrade"}) {
     const Ended ended = run_program("tractus-server", {command, "--help"});
     EXPECT_EQ(ended.code, 0);
     EXPECT_NE(ended.out.find(std::string("Example: tractus-server ") + command), std::string::npos)
         << ended.out;
   }
+}
+
+TEST(Program, UpgradeIsCheckedWithoutAChange) {
+  const fs::path folder = fs::path(::testing::TempDir()) / ("tractus-upgrade-" + core::new_id());
+  fs::create_directories(folder);
+  std::ofstream(folder / "password") << "an admin's password\n";
+  const fs::path data = folder / "data";
+  ASSERT_EQ(run_program("tractus-server", {"init", "--data", data, "--admin-name", "admin",
+                                           "--password-file", folder / "password"})
+                .code,
+            0);
+  const auto bytes = core::read_file(data / "tractus.db");
+  ASSERT_TRUE(bytes);
+  const Ended fits = run_program("tractus-server", {"upgrade", "--check", "--data", data});
+  EXPECT_EQ(fits.code, 0) << fits.out;
+  EXPECT_NE(fits.out.find("up to date"), std::string::npos) << fits.out;
+  const auto after = core::read_file(data / "tractus.db");
+  ASSERT_TRUE(after);
+  EXPECT_EQ(*after, *bytes);
+  EXPECT_FALSE(fs::exists(data / "tractus.db.upgrade"));
+  expect_refused(run_program("tractus-server", {"upgrade", "--data", data}), "--check");
+  fs::remove_all(folder);
 }
 
 TEST(Program, BadUseIsOneLineAndTwo) {

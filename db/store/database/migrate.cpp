@@ -20,51 +20,64 @@ core::Result<std::set<std::int64_t>> applied(Connection& connection) {
 }
 
 core::Result<void> apply(Connection& connection, const Migration& step) {
-  auto known = applied(connection);  // again, inside: another process may have been first
-  if (!known) return known.error();
-  if (known->contains(step.version)) return {};
-  TRY(connection.script(step.sql));
-  const std::vector<Value> values{step.version, step.name, core::utc_us()};
-  TRY(connection.query(
-      "insert into schema_versions (version, name, applied_utc_us) values (?, ?, ?)", values));
-  return {};
+  auto done = connection.script(step.sql);
+  if (done) {
+    const std::vector<Value> values{step.version, step.name, core::utc_us()};
+    if (const auto noted = connection.query(
+            "insert into schema_versions (version, name, applied_utc_us) values (?, ?, ?)", values);
+        !noted)
+      done = noted.error();
+  }
+  if (done) return {};
+  return core::Error{done.error().code, fmt::format("migration {:04}_{}: {}", step.version,
+                                                    step.name, done.error().what)};
 }
 
-/// In a transaction of its own: two processes that meet an empty database come one after the other.
-core::Result<void> make_versions(Connection& connection) {
-  TRY(connection.begin(Access::write));
-  auto made = connection.query(
-      "create table if not exists schema_versions "
-      "(version bigint primary key, name text not null, applied_utc_us bigint not null)",
-      {});
-  core::Result<void> done = made ? connection.commit() : core::Result<void>(made.error());
-  if (!done) connection.rollback();
-  return done;
-}
-
-}  // namespace
-
-core::Result<void> migrate(Connection& connection, const std::vector<Migration>& steps) {
-  TRY(make_versions(connection));
-  auto known = TRY(applied(connection));
+/// Those that are missing. Two processes that meet an empty database come one after the other: the
+/// transaction writes from its first statement on.
+core::Result<std::vector<Migration>> missing(Connection& connection,
+                                             const std::vector<Migration>& steps) {
+  TRY(
+      connection.query("create table if not exists schema_versions "
+                       "(version bigint primary key, name text not null, applied_utc_us bigint "
+                       "not null)",
+                       {}));
+  const auto known = TRY(applied(connection));
   const std::int64_t last = steps.empty() ? 0 : steps.back().version;
   if (!known.empty() && *known.rbegin() > last)
     return core::Error{core::Errc::conflict,
                        fmt::format("the database has schema {}, but this program supports schemas "
                                    "up to {}: use the newer program that made the database",
                                    *known.rbegin(), last)};
-  for (const Migration& step : steps) {
-    if (known.contains(step.version)) continue;
-    TRY(connection.begin(Access::write));
-    auto done = apply(connection, step);
-    if (done) done = connection.commit();
-    if (!done) {
-      connection.rollback();
-      return core::Error{done.error().code, fmt::format("migration {:04}_{}: {}", step.version,
-                                                        step.name, done.error().what)};
-    }
-  }
-  return {};
+  std::vector<Migration> out;
+  for (const Migration& step : steps)
+    if (!known.contains(step.version)) out.push_back(step);
+  return out;
+}
+
+core::Result<std::vector<Migration>> run_missing(Connection& connection,
+                                                 const std::vector<Migration>& steps) {
+  auto out = TRY(missing(connection, steps));
+  for (const Migration& step : out) TRY(apply(connection, step));
+  return out;
+}
+
+}  // namespace
+
+core::Result<void> migrate(Connection& connection, const std::vector<Migration>& steps) {
+  TRY(connection.begin(Access::write));
+  const auto run = run_missing(connection, steps);
+  core::Result<void> done = run ? connection.commit() : core::Result<void>(run.error());
+  if (!done) connection.rollback();
+  return done;
+}
+
+core::Result<std::vector<Migration>> try_migrations(Connection& connection,
+                                                    const std::vector<Migration>& steps) {
+  TRY(connection.begin(Access::write));
+  auto out = run_missing(connection, steps);
+  connection.rollback();
+  return out;
 }
 
 }  // namespace store

@@ -17,9 +17,12 @@ struct Migration {
 /// In order of version.
 std::vector<Migration> migrations();
 
-/// Brings the database to the last of `steps`, each step in its own transaction with the note that
-/// it was done. Errors: conflict when the database is newer than the steps (a newer program made
-/// it); those of the connection.
+/// Brings the database to the last of `steps`, all missing steps in one transaction: a step that
+/// fails leaves the database as it was. Errors: conflict when the database is newer than the steps
+/// (a newer program made it); those of the connection.
 core::Result<void> migrate(Connection& connection, const std::vector<Migration>& steps);
+/// Runs the missing steps and rolls them back; returns which they were. The same errors.
+core::Result<std::vector<Migration>> try_migrations(Connection& connection,
+                                                    const std::vector<Migration>& steps);
 
 }  // namespace tractus::store
