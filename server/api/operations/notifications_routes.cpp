@@ -1,4 +1,6 @@
 /// What the caller is told of by e-mail: nothing, until the caller chooses.
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "core/try.hpp"
@@ -84,7 +86,8 @@ Result<http::Response> set_notifications(const Call& call) {
     fields.wrong("address", "an e-mail address is expected, for example name@example.org");
   else if (const MailSettings* mail = mail_of(call);
            mail && !address.empty() && !allows_recipient(*mail, address))
-    fields.wrong("address", "this server sends mail only to addresses of other domains");
+    fields.wrong("address", fmt::format("this server sends mail only to addresses of {}",
+                                        fmt::join(mail->domains, ", ")));
   TRY(fields.done());
   TRY(call.backend.store.write([&](store::Writing& tx) -> Result<void> {
     TRY(store::set_notification_address(tx, call.caller.id, address));

@@ -1,5 +1,5 @@
 /// Being told of events: who, of what, when, and what happens when nobody takes the message. The
-/// clock is the test's; tests/e2e/notifications_test.cpp sends to a real mail server.
+/// clock is the test's; tests/notifications/told.py sends to a real mail server.
 #include <set>
 
 #include "db/store/operations/audit.hpp"
