@@ -147,7 +147,7 @@ std::vector<NamedSchema> study_deed_schemas() {
                {"participant",
                 nullable(text("Pseudonym of the participant; null if the change concerns none"))},
                {"trial_id", nullable(text("Id of the trial; null if the change concerns none, or "
-                                      "while the trial is rated blind"))},
+                                          "while the trial is rated blind"))},
                {"reason", text("Reason for the change; empty if none was given")}})},
       {"StudyEvents", object({{"events", array(ref("StudyEvent"), "Changes, newest first")}})}};
 }

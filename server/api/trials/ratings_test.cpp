@@ -123,7 +123,8 @@ TEST_F(RatingsByPeople, OfABlindTrialLeaveNoWayFromTheNameToTheTrial) {
   ASSERT_TRUE(store_.write([](store::Writing& tx) -> core::Result<void> {
     TRY(tx.query("update trials set state = 'assessed', correct = 1 where id = ?",
                  {trial_of("tom")}));
-    TRY(tx.query("update trials set case_id = (select case_id from trials where id = ?) where id = "
+    TRY(
+        tx.query("update trials set case_id = (select case_id from trials where id = ?) where id = "
                  "?",
                  {trial_of("tom"), trial_of("tia")}));
     return {};
