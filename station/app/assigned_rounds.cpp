@@ -97,6 +97,7 @@ core::Result<TrialReport> probe(const Round& round, const AssignedWork& work) {
   task.law = std::move(law);
   task.operator_name = work.participant;
   task.extra = {{"number", trial.number}};
+  if (!options.study.empty()) task.extra["study"] = options.study;
   task.blind = true;
   session::RigSetup setup = options.rig;
   setup.device = options.setup.device;
@@ -136,12 +137,6 @@ core::Result<void> hand_over_all(const Options& options, const session::StationF
   return core::Error{core::Errc::unavailable, text_of(report)};
 }
 
-core::Result<AssignedWork> next_work(const Round& round, bool all_sent, uplink::Server& server,
-                                     const uplink::Ticket& ticket) {
-  if (!all_sent) TRY(hand_over_all(round.options, round.folder));
-  return uplink::next_trial(server, ticket);
-}
-
 /// `work` until it is done, or the trainee does not try again.
 template <class Work>
 auto tried(Trainee& trainee, Stage stage, const Work& work) {
@@ -153,16 +148,22 @@ auto tried(Trainee& trainee, Stage stage, const Work& work) {
 
 }  // namespace
 
+NextWork assigned_work(const Options& options, const session::StationFolder& folder,
+                       uplink::Server& server, const uplink::Ticket& ticket) {
+  return [&](bool all_sent) -> core::Result<AssignedWork> {
+    if (!all_sent) TRY(hand_over_all(options, folder));
+    return uplink::next_trial(server, ticket);
+  };
+}
+
 core::Result<AssignedTally> do_assigned(const Options& options, Presence& presence,
-                                        const session::StationFolder& folder,
-                                        uplink::Server& server, const uplink::Ticket& ticket,
+                                        const session::StationFolder& folder, const NextWork& next,
                                         Trainee& trainee) {
   AssignedTally tally;
   bool sent = true;
   for (int i = 0; trainee.may_begin(); ++i) {
     const Round round{options, presence, folder, trainee, i};
-    auto work =
-        TRY(tried(trainee, Stage::server, [&] { return next_work(round, sent, server, ticket); }));
+    auto work = TRY(tried(trainee, Stage::server, [&] { return next(sent); }));
     tally.left = work.left;
     if (!work.trial || i == options.trials || !trainee.starts(work)) return tally;
     const AssignedTrial& trial = *work.trial;

@@ -2,6 +2,8 @@
 /// other.
 #pragma once
 
+#include <functional>
+
 #include "station/app/options.hpp"
 #include "station/app/presence.hpp"
 #include "station/uplink/assigned.hpp"
@@ -47,11 +49,15 @@ struct AssignedTally {
   bool faulted = false;
 };
 
-/// The server has each trial before it gives the next. Errors: the server's, the device's, the
-/// disk's, those of the trainee's answer.
+/// Where the next trial comes from. @param all_sent  the server has every trial that was done
+using NextWork = std::function<core::Result<wire::AssignedWork>(bool all_sent)>;
+/// Of the trainee's assignments: the server has each trial before it gives the next.
+NextWork assigned_work(const Options& options, const session::StationFolder& folder,
+                       uplink::Server& server, const uplink::Ticket& ticket);
+
+/// Errors: those of `next`, the device's, the disk's, those of the trainee's answer.
 core::Result<AssignedTally> do_assigned(const Options& options, Presence& presence,
-                                        const session::StationFolder& folder,
-                                        uplink::Server& server, const uplink::Ticket& ticket,
+                                        const session::StationFolder& folder, const NextWork& next,
                                         Trainee& trainee);
 
 }  // namespace tractus::app

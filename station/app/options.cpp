@@ -227,6 +227,9 @@ void add_kiosk(CLI::App& app, Options& options) {
   app.add_option("--browser", options.browser, "program that shows the page")
       ->capture_default_str()
       ->excludes(none);
+  app.add_option("--study", options.study,
+                 "for participants of this blind study alone, on a rig: each types the "
+                 "pseudonym, and there is no PIN");
   app.add_option("--idle", options.idle_s,
                  "s without a touch between trials; then the trainee is signed out")
       ->check(between(5.0, 3600.0))

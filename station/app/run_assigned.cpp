@@ -79,7 +79,8 @@ core::Result<int> run_assigned(const Options& options) {
   auto ticket = TRY(uplink::sign_in(*server, options.badge, pin));
   Presence presence(options, folder);
   AtTerminal trainee(options, presence);
-  auto tally = do_assigned(options, presence, folder, *server, ticket, trainee);
+  auto tally = do_assigned(options, presence, folder,
+                           assigned_work(options, folder, *server, ticket), trainee);
   uplink::sign_out(*server, ticket);
   if (!tally) return tally.error();
   if (options.json)

@@ -1,4 +1,5 @@
-/// The kiosk: who comes signs in on the screen and does the trials assigned, as with `assigned`.
+/// The kiosk: who comes signs in on the screen and does the trials assigned, as with `assigned`, or
+/// those of a blind study, as with `study`.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -12,6 +13,7 @@
 #include "station/app/kiosk_browser.hpp"
 #include "station/app/kiosk_technician.hpp"
 #include "station/app/start_watch.hpp"
+#include "station/app/study_work.hpp"
 #include "station/app/trial_epilogue.hpp"
 #include "station/devices/catalogue.hpp"
 #include "station/kiosk/page_server.hpp"
@@ -73,7 +75,8 @@ struct Kiosk {
 
 class AtKiosk final : public Trainee {
  public:
-  AtKiosk(const Kiosk& kiosk, const uplink::Ticket& ticket)
+  /// @param ticket  asks for results; null: they are shown to nobody, as in a blind study
+  AtKiosk(const Kiosk& kiosk, const uplink::Ticket* ticket)
       : kiosk_(kiosk), desk_(kiosk.desk), presence_(kiosk.presence), ticket_(ticket) {}
 
   bool may_begin() override {
@@ -143,8 +146,9 @@ class AtKiosk final : public Trainee {
   }
   /// Asks the server until the result is there, the trainee goes on, or it takes too long.
   void show_result(const std::string& trial_id) {
+    if (!ticket_) return desk_.tell([](Machine& machine, Instant_ns) { machine.result({}); });
     for (int asked = 0; asked < kMostAsked; ++asked) {
-      const auto result = uplink::trial_result(kiosk_.server, ticket_, trial_id);
+      const auto result = uplink::trial_result(kiosk_.server, *ticket_, trial_id);
       if (!result) return log_line(desk_, "no result was read: " + result.error().what);
       desk_.tell([&](Machine& machine, Instant_ns) { machine.result(*result); });
       if (result->state != wire::ResultState::assessing) return;
@@ -168,7 +172,7 @@ class AtKiosk final : public Trainee {
   const Kiosk& kiosk_;
   Desk& desk_;
   Presence& presence_;
-  const uplink::Ticket& ticket_;
+  const uplink::Ticket* ticket_;
 };
 
 void tell_sign_in_error(Desk& desk, const core::Error& error) {
@@ -221,25 +225,49 @@ std::optional<kiosk::Credentials> next_credentials(const Kiosk& kiosk) {
   return std::nullopt;
 }
 
-/// One person, from PIN to sign-out.
-void visit(const Kiosk& kiosk, const kiosk::Credentials& credentials) {
-  auto ticket = uplink::sign_in(kiosk.server, credentials.badge, credentials.pin);
-  if (!ticket) return tell_sign_in_error(kiosk.desk, ticket.error());
-  kiosk.desk.tell([&](Machine& machine, Instant_ns) { machine.signed_in(ticket->name); });
-  AtKiosk trainee(kiosk, *ticket);
-  const auto tally =
-      do_assigned(kiosk.options, kiosk.presence, kiosk.folder, kiosk.server, *ticket, trainee);
+/// Somebody who is signed in, until they have signed out.
+void do_trials(const Kiosk& kiosk, const NextWork& next, const uplink::Ticket* ticket) {
+  AtKiosk trainee(kiosk, ticket);
+  const auto tally = do_assigned(kiosk.options, kiosk.presence, kiosk.folder, next, trainee);
   if (!tally) log_line(kiosk.desk, tally.error().what);
   const bool left = kiosk.desk.look([](const Machine& machine) { return machine.leaves(); });
   if (tally && !left && !asked_to_stop()) {
     kiosk.desk.tell([](Machine& machine, Instant_ns now) { machine.complete(now); });
     kiosk.desk.wait([](const Machine& machine) { return machine.leaves(); }, asked_to_stop);
   }
-  uplink::sign_out(kiosk.server, *ticket);
+  if (ticket) uplink::sign_out(kiosk.server, *ticket);
   const auto lines = newest_trials(kiosk.folder);
   kiosk.desk.tell([&](Machine& machine, Instant_ns) { machine.trials(lines); });
   kiosk.presence.is(Presence::State::idle);
   kiosk.desk.tell([](Machine& machine, Instant_ns now) { machine.signed_out(now); });
+}
+
+/// A participant has a pseudonym and no PIN; what there is to do is on the disk from then on.
+void visit_of_participant(const Kiosk& kiosk, const std::string& participant) {
+  const auto next = [&](bool) { return next_of_study(kiosk.options, kiosk.folder, participant); };
+  const auto first = next(true);
+  if (!first && first.error().code == core::Errc::not_found)
+    return kiosk.desk.tell([](Machine& machine, Instant_ns now) {
+      machine.sign_in_refused("No participant of this study has that number.", now);
+    });
+  if (!first) return tell_sign_in_error(kiosk.desk, first.error());
+  kiosk.desk.tell([&](Machine& machine, Instant_ns) { machine.signed_in(participant); });
+  do_trials(kiosk, next, nullptr);
+}
+
+void visit_of_trainee(const Kiosk& kiosk, const kiosk::Credentials& credentials) {
+  auto ticket = uplink::sign_in(kiosk.server, credentials.badge, credentials.pin);
+  if (!ticket) return tell_sign_in_error(kiosk.desk, ticket.error());
+  kiosk.desk.tell([&](Machine& machine, Instant_ns) { machine.signed_in(ticket->name); });
+  do_trials(kiosk, assigned_work(kiosk.options, kiosk.folder, kiosk.server, *ticket), &*ticket);
+}
+
+/// One person, from badge to sign-out.
+void visit(const Kiosk& kiosk, const kiosk::Credentials& credentials) {
+  if (kiosk.options.study.empty())
+    visit_of_trainee(kiosk, credentials);
+  else
+    visit_of_participant(kiosk, credentials.badge);
 }
 
 void tell_recovered(Desk& desk, const session::Recovered& recovered) {
@@ -273,6 +301,7 @@ core::Result<int> run_kiosk(const Options& given) {
   const core::MonotonicClock clock;
   const kiosk::TimeOuts times{.idle_s = options.idle_s};
   Desk desk(clock, Machine(devices::is_simulated(options.setup.device), times));
+  if (!options.study.empty()) desk.tell([](Machine& machine, Instant_ns) { machine.of_study(); });
   if (!options.technician_pin_file.empty()) {
     const std::string pin = TRY(pin_in(options.technician_pin_file));
     if (pin.size() < 4 || pin.size() > 12 || pin.find_first_not_of("0123456789") != pin.npos)

@@ -12,11 +12,9 @@
 #include "station/app/commands.hpp"
 #include "station/app/exchange.hpp"
 #include "station/app/presence.hpp"
+#include "station/app/study_work.hpp"
 #include "station/app/trial_epilogue.hpp"
-#include "station/devices/catalogue.hpp"
 #include "station/rig/surgeon.hpp"
-#include "station/session/study_plan.hpp"
-#include "station/uplink/study.hpp"
 #include "study/sealed_law.hpp"
 
 namespace tractus {
@@ -25,8 +23,6 @@ namespace {
 using session::TrialReport;
 using wire::SealedTrial;
 using wire::StudyWork;
-
-constexpr int kAhead = 400;  // all that is left: the server may be away for the rest of the day
 
 /// What the command works with.
 struct Study {
@@ -40,34 +36,6 @@ struct Study {
 core::Result<study::StationKey> key_of(const Options& options) {
   auto token = TRY(token_of(options));
   return study::StationKey(core::sha256(core::bytes_of(token)));
-}
-
-/// From the server; from the disk when it does not answer.
-core::Result<StudyWork> work_of(const Study& study, bool& away) {
-  const Options& o = study.options;
-  auto server = TRY(connect(o));
-  auto work = uplink::take_trials(*server, o.study, o.participant, kAhead);
-  away = !work && work.error().code == core::Errc::unavailable;
-  if (work) {
-    TRY(session::keep_work(study.folder, *work));
-    return work;
-  }
-  if (!away) return work;
-  auto kept = session::kept_work(study.folder, o.study, o.participant);
-  if (!kept && kept.error().code == core::Errc::not_found) return work;
-  if (kept) fmt::print(stderr, "the server is away: going on with what is on the disk\n");
-  return kept;
-}
-
-/// A person in front of the rig of a simulated participant, or the reverse, would spoil the data.
-core::Result<void> check_who(const Options& options, const StudyWork& work) {
-  const bool simulated = devices::is_simulated(options.rig.device);
-  if (simulated == work.simulated) return {};
-  return core::Error{
-      core::Errc::bad_input,
-      fmt::format("{} is {}: --device {} would record {} in that name", work.participant,
-                  work.simulated ? "simulated" : "a person", options.rig.device,
-                  simulated ? "a simulated surgeon" : "a person")};
 }
 
 /// Different for every trial, the same when the same trial is done again.
@@ -173,9 +141,8 @@ core::Result<std::uint64_t> rounds(Study& study, bool& faulted) {
   int left = study.options.trials;
   while (true) {
     handed(study);
-    bool away = false;
-    auto work = TRY(work_of(study, away));
-    TRY(check_who(study.options, work));
+    const auto [work, away] = TRY(study_part(study.options, study.folder, study.options.participant,
+                                             study.options.rig.device));
     auto todo = TRY(session::still_to_do(study.folder, work));
     for (const SealedTrial& trial : todo) {
       if (left == 0 || asked_to_stop() || !study.presence.may_resume()) return todo.size();

@@ -78,6 +78,7 @@ core::Json Machine::to_json() const {
                  {"waiting_trials", waiting_}};
   if (work_ && work_->trial) out["work"] = json_of(*work_);
   if (!technician_pin_.empty()) out["technician"] = true;
+  if (study_) out["study"] = true;
   if (screen_ == Screen::work) out["button"] = button_;
   if (screen_ == Screen::paused) out["in_trial"] = pauses_trial();
   if (screen_ == Screen::technician)
@@ -126,7 +127,8 @@ core::Result<void> Machine::take_badge(const Command& command, core::Instant_ns 
   if (!is_badge(command.text)) return core::bad_input("badge: a number of a badge is expected");
   forget();
   badge_ = command.text;
-  show(Screen::pin, now);
+  if (study_) credentials_ = Credentials{badge_, ""};
+  show(study_ ? Screen::checking : Screen::pin, now);
   return {};
 }
 
@@ -303,7 +305,7 @@ void Machine::signed_in(const std::string& name) {
 }
 
 void Machine::sign_in_refused(const std::string& why, core::Instant_ns now) {
-  show(Screen::pin, now);
+  show(study_ ? Screen::badge : Screen::pin, now);
   notice_ = why;
 }
 

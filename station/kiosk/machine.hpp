@@ -162,6 +162,9 @@ class Machine {
   /// minutes, as the server does with a badge.
   void technician_pin(std::string pin) { technician_pin_ = std::move(pin); }
 
+  /// Participants of a blind study come, not trainees: a pseudonym in place of badge and PIN.
+  void of_study() { study_ = true; }
+
   Screen screen() const noexcept { return screen_; }
   std::optional<FaultKind> fault() const noexcept { return fault_; }
   /// What the page shows: the screen with what belongs to it. Never a PIN.
@@ -256,6 +259,7 @@ class Machine {
   core::Json about_ = core::Json::object();
   std::string instruction_;  ///< of the self-test
   bool waits_ = false, stops_test_ = false, button_ = false;
+  bool study_ = false;
   std::string technician_pin_;
   int wrong_pins_ = 0;
   core::Instant_ns wrong_at_ = 0;

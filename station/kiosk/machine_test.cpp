@@ -125,6 +125,18 @@ TEST_F(KioskMachine, ATrialFromStartToResult) {
   EXPECT_FALSE(machine_.answer()) << "the answer was of the trial before";
 }
 
+TEST_F(KioskMachine, AParticipantOfAStudyHasAPseudonymAndNoPin) {
+  machine_.of_study();
+  EXPECT_EQ(machine_.to_json()["study"], true);
+  expect_taken(command(Kind::badge, "P01"));
+  EXPECT_EQ(machine_.screen(), Screen::checking);
+  EXPECT_EQ(machine_.take_credentials()->badge, "P01");
+  machine_.sign_in_refused("No participant", now_);
+  EXPECT_EQ(machine_.screen(), Screen::badge);
+  EXPECT_EQ(machine_.to_json()["notice"], "No participant");
+  expect_refused(command(Kind::pin, "2468"));
+}
+
 TEST_F(KioskMachine, ABlindTrialShowsNoDepth) {
   to_work();
   expect_taken(command(Kind::start));

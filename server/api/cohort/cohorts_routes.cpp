@@ -235,6 +235,7 @@ std::vector<RouteInfo> cohorts_routes() {
       "POST", "", "addCohort",
       "Create a cohort; a member of the faculty who creates a cohort becomes its leader",
       add_cohort_route);
+  add.who.push_back(Role::director);
   add.body = "NewCohort";
   add.schemas = {
       {"NewCohort",

@@ -140,6 +140,13 @@ void mark_outside_cohorts(std::vector<ImportRow>& rows) {
       row.error = "only trainees and faculty can join a cohort";
 }
 
+/// A director brings residents; whoever may see or decide more is made by an administrator.
+void mark_beyond_director(std::vector<ImportRow>& rows) {
+  for (ImportRow& row : rows)
+    if (row.error.empty() && row.account.role != Role::trainee)
+      row.error = "a director imports trainees; an administrator creates other accounts";
+}
+
 Result<void> fill_secrets(std::vector<ImportRow>& rows, std::int64_t now_utc_us) {
   for (ImportRow& row : rows) {
     row.account.id = core::new_id();
@@ -183,6 +190,7 @@ Result<http::Response> import_accounts(const Call& call) {
   for (ImportRow& row : rows)
     if (row.account.level.empty()) row.account.level = asked.level;
   if (!asked.cohort.empty()) mark_outside_cohorts(rows);
+  if (call.caller.role == Role::director) mark_beyond_director(rows);
   TRY(call.backend.store.read([&](store::Reading& tx) { return mark_taken(tx, rows); }));
   const bool faultless =
       std::ranges::all_of(rows, [](const ImportRow& row) { return row.error.empty(); });
@@ -229,8 +237,10 @@ std::vector<RouteInfo> account_import_routes() {
   RouteInfo out{.method = "POST",
                 .path = "/api/v1/accounts/import",
                 .id = "importAccounts",
-                .summary = "Check a list of accounts in CSV, or create all accounts of the list",
-                .who = {Role::admin},
+                .summary =
+                    "Check a list of accounts in CSV, or create all accounts of the list; a "
+                    "director creates trainees",
+                .who = {Role::admin, Role::director},
                 .parameters = {},
                 .body = "AccountsImport",
                 .body_limit_bytes = kMaxImport_bytes,
@@ -238,7 +248,7 @@ std::vector<RouteInfo> account_import_routes() {
                 .schemas = import_schemas(),
                 .handle = import_accounts};
   out.lane = http::Lane::hashing;
-  out.ends = {{"/cohort", Object::cohort, {Role::admin}}};
+  out.ends = {{"/cohort", Object::cohort, out.who}};
   return {out};
 }
 

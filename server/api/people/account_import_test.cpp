@@ -96,7 +96,27 @@ TEST_F(AccountImport, RefusesAListThatIsNone) {
        {"", "name\n", "badge\nB1\n", "name,colour\nIda,1\n", "name,name\na,b\n", "name\n\"Ida\n"})
     import(csv, true, "", 400);
   EXPECT_EQ(post("ann", "/accounts/import", {{"csv", "name\nIda"}, {"apply", "yes"}}).status, 400);
-  EXPECT_EQ(post("dora", "/accounts/import", {{"csv", "name\nIda"}}).status, 403);
+}
+
+TEST_F(AccountImport, IsForAdministratorsAndOfTraineesForDirectors) {
+  for (const char* other : {"fay", "rex", "ted", "tom"})
+    EXPECT_EQ(post(other, "/accounts/import", {{"csv", "name\nIda"}}).status, 403) << other;
+  const std::size_t before = accounts();
+  for (const char* role : {"admin", "director", "faculty", "researcher", "technician"}) {
+    const auto shown =
+        post("dora", "/accounts/import",
+             {{"csv", std::string("name,role\nIda,\nUlf,") + role + "\n"}, {"apply", true}});
+    ASSERT_EQ(shown.status, 200) << text(shown);
+    EXPECT_TRUE(json(shown)["rows"][0]["error"].is_null()) << role;
+    EXPECT_FALSE(json(shown)["rows"][1]["error"].is_null()) << role;
+  }
+  EXPECT_EQ(accounts(), before);
+  const Json cohort = json(post("dora", "/cohorts", {{"name", "Residents 2027"}}));
+  const auto made = post("dora", "/accounts/import",
+                         {{"csv", "name\nIda\n"}, {"apply", true}, {"cohort", cohort["id"]}});
+  EXPECT_EQ(made.status, 201) << text(made);
+  EXPECT_EQ(accounts(), before + 1);
+  EXPECT_EQ(json(get("ann", "/cohorts/" + cohort["id"].get<std::string>()))["trainees"], 1);
 }
 
 }  // namespace

@@ -47,14 +47,15 @@ core::Result<http::Response> new_participant(const Call& call) {
 
 core::Result<http::Response> events_of(const Call& call) {
   const std::string& id = call.text("id");
-  auto found = TRY(call.backend.store.read(
-      [&](store::Reading& tx) -> core::Result<std::vector<store::StudyEvent>> {
-        auto study = TRY(store::find_study(tx, id));
-        return store::study_events(tx, study, call.integer("limit"));
-      }));
-  core::Json list = core::Json::array();
-  for (const auto& event : found) list.push_back(event_json(event));
-  return json_response({{"events", list}});
+  auto list = TRY(call.backend.store.read([&](store::Reading& tx) -> core::Result<core::Json> {
+    const auto study = TRY(store::find_study(tx, id));
+    const auto found = TRY(store::study_events(tx, study, call.integer("limit")));
+    const auto unlinked = TRY(store::trials_with_hidden_name(tx));
+    core::Json out = core::Json::array();
+    for (const auto& event : found) out.push_back(event_json(event, unlinked));
+    return out;
+  }));
+  return json_response({{"events", std::move(list)}});
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <map>
 
 #include "core/try.hpp"
+#include "db/store/trials/ratings.hpp"
 
 namespace tractus {
 namespace api {
@@ -61,10 +62,11 @@ struct Index {
   }
 };
 
-Json slot_json(const store::Slot& slot, const Index& index, bool told) {
+Json slot_json(const StudyFacts& facts, const store::Slot& slot, const Index& index, bool told) {
   Json trials = Json::array();
   if (const auto found = index.trials.find(slot.id); found != index.trials.end())
-    for (const auto* trial : found->second) trials.push_back(trial_json(*trial, told));
+    for (const auto* trial : found->second)
+      if (!facts.unlinked.contains(trial->trial_id)) trials.push_back(trial_json(*trial, told));
   Json repeats;
   if (slot.repeat_of) repeats = index.numbers.at(*slot.repeat_of);
   return {{"number", index.numbers.at(slot.id)},
@@ -114,7 +116,7 @@ Json participant_json(const StudyFacts& facts, const store::Participant& who, co
   for (const auto& slot : facts.slots) {
     if (slot.participant != who.name) continue;
     tally.add(slot, index);
-    slots.push_back(slot_json(slot, index, !left));
+    slots.push_back(slot_json(facts, slot, index, !left));
   }
   return {{"name", who.name},
           {"state", name(who.state)},
@@ -144,6 +146,7 @@ core::Result<StudyFacts> study_facts(store::Reading& tx, const store::StudyId& i
   out.slots = std::move(slots);
   auto trials = TRY(store::study_trials(tx, id));
   out.trials = std::move(trials);
+  out.unlinked = TRY(store::trials_with_hidden_name(tx));
   return out;
 }
 
@@ -169,12 +172,13 @@ Json study_json(const StudyFacts& facts) {
   return out;
 }
 
-Json event_json(const store::StudyEvent& event) {
+Json event_json(const store::StudyEvent& event, const std::set<std::string>& unlinked) {
+  const bool linked = event.trial_id && !unlinked.contains(*event.trial_id);
   return {{"at_utc_us", event.at_utc_us},
           {"who", event.who},
           {"what", event.what},
           {"participant", core::or_null(event.participant)},
-          {"trial_id", core::or_null(event.trial_id)},
+          {"trial_id", linked ? Json(*event.trial_id) : Json()},
           {"reason", event.reason}};
 }
 

@@ -109,7 +109,8 @@ std::vector<NamedSchema> study_schemas() {
                 nullable(text(
                     "Name of the scenario; null while the participant still has trials to do"))},
                {"trials", array(ref("StudyTrial"),
-                                "Trials of the slot, sorted by the time of their last change")}})},
+                                "Trials of the slot, sorted by the time of their last change; "
+                                "without those that are rated blind")}})},
       {"StudyTrial", study_trial_schema()}};
 }
 
@@ -145,7 +146,8 @@ std::vector<NamedSchema> study_deed_schemas() {
                 text("Kind of the change, for example made, enrolled, taken, recorded or invalid")},
                {"participant",
                 nullable(text("Pseudonym of the participant; null if the change concerns none"))},
-               {"trial_id", nullable(text("Id of the trial; null if the change concerns none"))},
+               {"trial_id", nullable(text("Id of the trial; null if the change concerns none, or "
+                                          "while the trial is rated blind"))},
                {"reason", text("Reason for the change; empty if none was given")}})},
       {"StudyEvents", object({{"events", array(ref("StudyEvent"), "Changes, newest first")}})}};
 }

@@ -6,6 +6,7 @@
 
 #include "core/try.hpp"
 #include "db/store/cases/cases.hpp"
+#include "db/store/trials/ratings.hpp"
 #include "metrics/metric.hpp"
 #include "server/api/trials/trial_json.hpp"
 #include "statistics/distributions/proportions.hpp"
@@ -187,11 +188,12 @@ Json attempts_json(const Programme& of, std::size_t trainee, const assessment::S
       scores[of.cohort.scores[k]] =
           std::isfinite(attempt.scores[k]) ? Json(attempt.scores[k]) : Json();
     const bool watched = standing.signalled_at > 0 && t >= standing.signalled_at;
+    const bool linked = !of.unlinked.contains(summary.id);
     out.push_back(
         {{"number", t + 1},
-         {"trial", summary.id},
+         {"trial", linked ? Json(summary.id) : Json()},
          {"scenario", summary.case_title},
-         {"started_utc_us", summary.started_utc_us},
+         {"started_utc_us", linked ? Json(summary.started_utc_us) : Json()},
          {"correct", attempt.right},
          {"confidence", confidence[t] ? Json(*confidence[t]) : Json()},
          {"sum", standing.sums[t]},
@@ -248,10 +250,16 @@ Result<std::map<std::string, CurriculumNext>> curriculum_next(store::Reading& tx
 Result<Programme> programme_of(const Call& call) {
   auto trials = TRY(trials_for(call));
   std::erase_if(trials, [](const auto& trial) { return !counts(trial); });
-  Programme out{.cohort = {}, .trials = {}, .criteria = {}, .next = {}, .backend = &call.backend};
+  Programme out{.cohort = {},
+                .trials = {},
+                .criteria = {},
+                .next = {},
+                .unlinked = {},
+                .backend = &call.backend};
   TRY(call.backend.store.read([&](store::Reading& tx) -> Result<void> {
     out.criteria = TRY(criteria_history(tx, store::CriteriaKind::programme, ""));
     out.next = TRY(curriculum_next(tx, call));
+    if (call.of != Scope::own) out.unlinked = TRY(store::trials_with_hidden_name(tx));
     return {};
   }));
   out.cohort.scores = followed_metrics(trials);

@@ -1,6 +1,8 @@
 /// The learning state of each trainee, from the scored trials of a cohort in order of time.
 #pragma once
 
+#include <set>
+
 #include "assessment/trainee.hpp"
 #include "db/store/cohort/cohort.hpp"
 #include "server/api/backend.hpp"
@@ -20,6 +22,8 @@ struct Programme {
   std::vector<std::vector<store::CohortTrial>> trials;  ///< [trainee][attempt], as cohort.attempts
   CriteriaHistory criteria;                             ///< of the programme
   std::map<std::string, CurriculumNext> next;           ///< by the trainee's name
+  std::set<std::string>
+      unlinked;  ///< trials that are rated blind: beside a name, without id and time
   Backend* backend;
 };
 

@@ -4,6 +4,7 @@
 #include "core/bytes.hpp"
 #include "core/try.hpp"
 #include "db/store/trials/debriefs.hpp"
+#include "db/store/trials/ratings.hpp"
 #include "server/api/access.hpp"
 #include "server/api/route.hpp"
 #include "server/api/schema.hpp"
@@ -70,7 +71,7 @@ Result<http::Response> remove_comment(const Call& call) {
   return comments_response(call, 200);
 }
 
-/// The answer names a person only if the caller may see this person's trials.
+/// The answer names a person only if the caller may see this person's trials and none is rated blind.
 Result<http::Response> references_response(const Call& call) {
   struct Found {
     bool own;
@@ -81,7 +82,9 @@ Result<http::Response> references_response(const Call& call) {
     auto own = TRY(store::is_reference(tx, call.text("id")));
     auto others = TRY(store::references_for(tx, call.text("id")));
     Found out{own, std::move(others), {}};
+    const auto hidden = TRY(store::trials_with_hidden_name(tx));
     for (const auto& one : out.others) {
+      if (hidden.contains(one.trial_id)) continue;
       auto sees = TRY(call.of == Scope::all
                           ? Result<bool>(true)
                           : relates(tx, call.caller, call.of, Object::trial, one.trial_id));

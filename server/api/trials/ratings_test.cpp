@@ -119,6 +119,43 @@ TEST_F(RatingsByPeople, OfABlindTrialHideTheNameUntilAllHaveRated) {
   EXPECT_EQ(in_table(), 1u);
 }
 
+TEST_F(RatingsByPeople, OfABlindTrialLeaveNoWayFromTheNameToTheTrial) {
+  ASSERT_TRUE(store_.write([](store::Writing& tx) -> core::Result<void> {
+    TRY(tx.query("update trials set state = 'assessed', correct = 1 where id = ?",
+                 {trial_of("tom")}));
+    TRY(
+        tx.query("update trials set case_id = (select case_id from trials where id = ?) where id = "
+                 "?",
+                 {trial_of("tom"), trial_of("tia")}));
+    return {};
+  }));
+  ASSERT_EQ(post("fay", of("tom", "/reference"), {{"reference", true}}).status, 200);
+  const auto attempt = [&](const char* who) {
+    return json(get(who, "/cohort/trainees/tom"))["attempts"].at(0);
+  };
+  const auto place = [&](const char* who) {
+    return json(get(who, "/trials/" + trial_of("tom")))["study"];
+  };
+  const auto example = [&] {
+    return json(get("flo", of("tia", "/references")))["trials"].at(0)["operator"];
+  };
+  ask_for({{"blind", true}});
+  for (const char* who : {"fay", "flo", "dora", "ann"}) {
+    EXPECT_EQ(attempt(who)["trial"], Json()) << who;
+    EXPECT_EQ(attempt(who)["started_utc_us"], Json()) << who;
+    EXPECT_EQ(attempt(who)["correct"], true) << who << ": the curve stays";
+    EXPECT_EQ(place(who), Json()) << who << ": the assignment's page lists its people";
+  }
+  EXPECT_EQ(example(), "");
+  EXPECT_EQ(attempt("tom")["trial"], trial_of("tom"));
+  EXPECT_EQ(place("tom")["id"], "a-tom");
+  ASSERT_EQ(rate("fay", {4, 5}).status, 201);
+  ASSERT_EQ(rate("flo", {4, 5}).status, 201);
+  EXPECT_EQ(attempt("fay")["trial"], trial_of("tom"));
+  EXPECT_EQ(place("fay")["participant"], "P-tom");
+  EXPECT_EQ(example(), "Tom Tell");
+}
+
 TEST_F(RatingsByPeople, AreSeenByTheTraineeOnceReleasedAndComplete) {
   ask_for();
   rate("fay", {4, 5});

@@ -93,9 +93,11 @@ core::Result<TrialFacts> trial_facts(Backend& backend, const store::TrialRecord&
 
 core::Result<http::Response> one_trial(const Call& call) {
   auto found = TRY(find_trial(call));
-  if (found.trial.summary.name_hidden && call.of != Scope::own)
-    found.trial.summary.operator_name.clear(), found.trial.summary.person.clear();
   auto facts = TRY(trial_facts(call.backend, found.trial));
+  if (found.trial.summary.name_hidden && call.of != Scope::own) {
+    found.trial.summary.operator_name.clear(), found.trial.summary.person.clear();
+    facts.study.reset();  // the place in a study or an assignment tells whose trial it is
+  }
   return json_response(trial_json(found.trial, found.scores, facts));
 }
 

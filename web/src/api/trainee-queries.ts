@@ -65,9 +65,10 @@ export const traineeSchema = v.object({
   attempts: v.array(
     v.object({
       number: count,
-      trial: v.string(),
+      /** Null, with the time, while the trial is rated blind. */
+      trial: v.nullable(v.string()),
       scenario: v.string(),
-      started_utc_us: inUtc,
+      started_utc_us: v.nullable(inUtc),
       correct: v.boolean(),
       confidence: v.nullable(portion),
       sum: finite,

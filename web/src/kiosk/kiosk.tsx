@@ -11,7 +11,7 @@ import styles from './kiosk.module.css';
 function Screen({ state, send }: { readonly state: State; readonly send: Send }) {
   switch (state.screen) {
     case 'badge':
-      return <BadgeScreen technician={state.technician} send={send} />;
+      return <BadgeScreen study={state.study} notice={state.notice} technician={state.technician} send={send} />;
     case 'pin':
       return <PinScreen title="Type your PIN" notice={state.notice} send={send} />;
     case 'technician_pin':
@@ -21,7 +21,7 @@ function Screen({ state, send }: { readonly state: State; readonly send: Send })
     case 'testing':
       return <TestScreen text={state.test?.text ?? ''} waits={state.test?.waits ?? false} send={send} />;
     case 'checking':
-      return <WaitScreen text="Checking badge and PIN" />;
+      return <WaitScreen text={state.study ? 'Checking your number' : 'Checking badge and PIN'} />;
     case 'work':
       return state.work ? <WorkScreen work={state.work} button={state.button} send={send} /> : null;
     case 'preparing':
@@ -33,7 +33,7 @@ function Screen({ state, send }: { readonly state: State; readonly send: Send })
     case 'saving':
       return <WaitScreen text="Saving your trial" />;
     case 'result':
-      return state.outcome ? <ResultScreen outcome={state.outcome} send={send} /> : null;
+      return state.outcome ? <ResultScreen study={state.study} outcome={state.outcome} send={send} /> : null;
     case 'paused':
       return <PausedScreen inTrial={state.in_trial} send={send} />;
     case 'complete':

@@ -37,15 +37,27 @@ function Pad({ onDigit, onDelete, onEnter, ready, enter }: PadProps) {
   );
 }
 
-export function BadgeScreen({ technician, send }: { readonly technician: boolean; readonly send: Send }) {
+interface BadgeProps {
+  readonly study: boolean;
+  readonly notice: string;
+  readonly technician: boolean;
+  readonly send: Send;
+}
+
+export function BadgeScreen({ study, notice, technician, send }: BadgeProps) {
   const [badge, setBadge, give] = useBadge(send);
   const add = (digit: string) => setBadge((text) => text + digit);
   return (
     <section className={styles.columns}>
       <div className={styles.words}>
-        <h1>Scan your badge</h1>
-        <p>Hold the badge to the scanner, or type its number.</p>
-        <output className={styles.typed} aria-label="Badge number">
+        <h1>{study ? 'Type your participant number' : 'Scan your badge'}</h1>
+        <p>
+          {study
+            ? 'It stands on the sheet that you were given for this study.'
+            : 'Hold the badge to the scanner, or type its number.'}
+        </p>
+        {notice === '' ? null : <p role="alert">{notice}</p>}
+        <output className={styles.typed} aria-label={study ? 'Participant number' : 'Badge number'}>
           {badge === '' ? ' ' : badge}
         </output>
         {technician ? (

@@ -94,6 +94,7 @@ const State = v.object({
   button: v.optional(v.boolean(), false),
   in_trial: v.optional(v.boolean(), false),
   technician: v.optional(v.boolean(), false),
+  study: v.optional(v.boolean(), false),
   findings: v.optional(v.array(Finding), []),
   trials: v.optional(v.array(v.string()), []),
   log: v.optional(v.array(v.string()), []),

@@ -154,7 +154,13 @@ function Scores({ result }: { readonly result: Result | null }) {
   );
 }
 
-export function ResultScreen({ outcome, send }: { readonly outcome: Outcome; readonly send: Send }) {
+interface ResultProps {
+  readonly study: boolean;
+  readonly outcome: Outcome;
+  readonly send: Send;
+}
+
+export function ResultScreen({ study, outcome, send }: ResultProps) {
   return (
     <section className={styles.columns}>
       <div className={styles.words}>
@@ -163,7 +169,8 @@ export function ResultScreen({ outcome, send }: { readonly outcome: Outcome; rea
         {outcome.sent ? (
           <>
             <p>The server has it.</p>
-            {outcome.drilled ? null : <Scores result={outcome.result} />}
+            {study ? <p>Nobody sees results of this study before all your trials are done.</p> : null}
+            {study || outcome.drilled ? null : <Scores result={outcome.result} />}
           </>
         ) : (
           <p>The server does not answer. The trial is safe at this station and is sent later by itself.</p>

@@ -1,10 +1,12 @@
+import { useQuery } from '@tanstack/react-query';
 import type { ReactNode } from 'react';
+import { sessionQuery } from '@/api';
 import { TabbedPage } from '@/ui';
 
 const kTabs = [
-  { to: '/class', name: 'Import a class' },
-  { to: '/class/change', name: 'Change accounts' },
-  { to: '/class/groups', name: 'Groups of the provider' },
+  { to: '/class', name: 'Import a class', roles: ['admin', 'director'] },
+  { to: '/class/change', name: 'Change accounts', roles: ['admin'] },
+  { to: '/class/groups', name: 'Groups of the provider', roles: ['admin'] },
 ] as const;
 
 /** What the pages of a class have in common; cards are printed without it. */
@@ -16,8 +18,12 @@ export const Frame = ({
   readonly at: (typeof kTabs)[number]['to'];
   readonly lead: string;
   readonly children: ReactNode;
-}) => (
-  <TabbedPage tabs={kTabs} at={at} label="Class" lead={lead} onPaper="content">
-    {children}
-  </TabbedPage>
-);
+}) => {
+  const role = useQuery({ ...sessionQuery, enabled: false }).data?.role ?? '';
+  const tabs = kTabs.filter(({ to, roles }) => to === at || (roles as readonly string[]).includes(role));
+  return (
+    <TabbedPage tabs={tabs} at={at} label="Class" lead={lead} onPaper="content">
+      {children}
+    </TabbedPage>
+  );
+};

@@ -8,7 +8,8 @@ const GroupsPage = lazy(() => index().then(({ GroupsPage: page }) => ({ default:
 const ImportPage = lazy(() => index().then(({ ImportPage: page }) => ({ default: page })));
 
 export const feature: Feature = {
-  menu: [], // linked from the accounts: an administrator's menu is long
+  // An administrator's menu is long: there it is linked from the accounts.
+  menu: [{ to: '/class', name: 'Class', roles: ['director'], order: 58 }],
   pages: [
     { path: '/class', show: () => <ImportPage /> },
     { path: '/class/change', show: () => <ChangePage /> },

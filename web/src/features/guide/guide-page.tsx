@@ -4,37 +4,22 @@ import { sessionQuery } from '@/api';
 import { Card, useTitle } from '@/ui';
 import styles from './guide.module.css';
 import { kPages, type GuidePage as Page } from './pages';
+import { FirstWeekPage } from './first-week-page';
 import { ScriptsPage } from './scripts-page';
+import { Steps } from './steps';
 
-/** Address of each picture that the tests have made, by its name; a step without one stands alone. */
-const kMade = import.meta.glob<string>('./pictures/*.jpg', { eager: true, query: '?url', import: 'default' });
-const addressOf = (name: string | undefined) => (name === undefined ? undefined : kMade[`./pictures/${name}.jpg`]);
+/** Pages beside those of the roles. */
+const kMore = [
+  { at: 'first-week', name: 'First week', Content: FirstWeekPage },
+  { at: 'scripts', name: 'Scripts', Content: ScriptsPage },
+] as const;
 
 function RolePage({ page }: { readonly page: Page }) {
   return (
     <>
       <p className={styles.for}>{page.purpose}</p>
       <Card title="Steps">
-        <ol className={styles.steps}>
-          {page.steps.map(({ title, text, to, picture }) => (
-            <li key={title}>
-              <strong>{title}</strong>
-              <p>
-                {text} {to ? <Link href={to.href}>{to.name}</Link> : null}
-              </p>
-              {picture && addressOf(picture.name) ? (
-                <img
-                  className={styles.picture}
-                  src={addressOf(picture.name)}
-                  alt={picture.shows}
-                  width={1200}
-                  height={750}
-                  loading="lazy"
-                />
-              ) : null}
-            </li>
-          ))}
-        </ol>
+        <Steps of={page.steps} />
       </Card>
       <Card title="Terms">
         <dl className={styles.terms}>
@@ -50,12 +35,13 @@ function RolePage({ page }: { readonly page: Page }) {
   );
 }
 
-/** One page for each role: its purpose, steps and terms; and one for scripts. */
+/** One page for each role: its purpose, steps and terms; the first week of a residency; and one for scripts. */
 export function GuidePage({ role }: { readonly role: string | undefined }) {
   const own = useQuery({ ...sessionQuery, enabled: false }).data?.role;
   const page = kPages.find((one) => one.role === (role ?? own)) ?? kPages[0];
-  const scripts = role === 'scripts';
-  useTitle(scripts ? 'Guide: Scripts' : page ? `Guide: ${page.name}` : 'Guide');
+  const more = kMore.find(({ at }) => at === role);
+  const title = more?.name ?? page?.name;
+  useTitle(title === undefined ? 'Guide' : `Guide: ${title}`);
   if (!page) return null;
   return (
     <div className={styles.page}>
@@ -68,16 +54,18 @@ export function GuidePage({ role }: { readonly role: string | undefined }) {
           <Link
             key={one.role}
             href={`/guide/${one.role}`}
-            aria-current={!scripts && one.role === page.role ? 'page' : undefined}
+            aria-current={!more && one.role === page.role ? 'page' : undefined}
           >
             {one.name}
           </Link>
         ))}
-        <Link href="/guide/scripts" aria-current={scripts ? 'page' : undefined}>
-          Scripts
-        </Link>
+        {kMore.map(({ at, name }) => (
+          <Link key={at} href={`/guide/${at}`} aria-current={more?.at === at ? 'page' : undefined}>
+            {name}
+          </Link>
+        ))}
       </nav>
-      {scripts ? <ScriptsPage /> : <RolePage page={page} />}
+      {more ? <more.Content /> : <RolePage page={page} />}
     </div>
   );
 }

@@ -1,9 +1,10 @@
 /** The list of studies, and a new one. */
 import { lazy } from 'react';
 import type { Feature } from '@/ui';
-import { StudiesPage } from './studies-page';
 
-const NewStudyPage = lazy(() => import('./new-study-page').then(({ NewStudyPage: page }) => ({ default: page })));
+const index = () => import('./index');
+const NewStudyPage = lazy(() => index().then(({ NewStudyPage: page }) => ({ default: page })));
+const StudiesPage = lazy(() => index().then(({ StudiesPage: page }) => ({ default: page })));
 
 export const feature: Feature = {
   menu: [{ to: '/studies', name: 'Studies', roles: ['admin', 'researcher'], order: 80 }],

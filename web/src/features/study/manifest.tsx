@@ -1,6 +1,8 @@
 /** The page of one study. */
+import { lazy } from 'react';
 import type { Feature } from '@/ui';
-import { StudyPage } from './study-page';
+
+const StudyPage = lazy(() => import('./index').then(({ StudyPage: page }) => ({ default: page })));
 
 export const feature: Feature = {
   menu: [],

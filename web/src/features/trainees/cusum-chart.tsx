@@ -6,7 +6,7 @@ import styles from './trainees.module.css';
 /** The day of a trial, by its number. */
 const startOf = (attempts: Trainee['attempts'], trial: number) => {
   const found = attempts.find(({ number }) => number === trial);
-  return found ? formatDate(found.started_utc_us) : '';
+  return found && found.started_utc_us !== null ? formatDate(found.started_utc_us) : '';
 };
 
 /** The sums trial by trial: towards competence, and from its signal on towards relapse. */

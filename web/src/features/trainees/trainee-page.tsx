@@ -58,20 +58,24 @@ function Attempts({ trainee, mayOpen }: { readonly trainee: Trainee; readonly ma
         caption="Trials"
         order="newest first"
         rows={[...trainee.attempts].reverse()}
-        keyOf={({ trial }) => trial}
+        keyOf={({ number }) => String(number)}
         empty="No trials."
         columns={[
           {
             name: 'Trial',
             by: (one) => one.number,
             cell: (one) =>
-              mayOpen ? (
+              mayOpen && one.trial !== null ? (
                 <Link href={`/trials/${encodeURIComponent(one.trial)}`}>{formatCount(one.number)}</Link>
               ) : (
                 formatCount(one.number)
               ),
           },
-          { name: 'Started', by: (one) => one.started_utc_us, cell: (one) => formatDateTime(one.started_utc_us) },
+          {
+            name: 'Started',
+            by: (one) => one.started_utc_us ?? 0,
+            cell: (one) => (one.started_utc_us === null ? 'rated blind' : formatDateTime(one.started_utc_us)),
+          },
           { name: 'Scenario', by: (one) => one.scenario, cell: (one) => one.scenario },
           {
             name: 'Answer',

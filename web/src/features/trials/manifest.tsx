@@ -1,6 +1,8 @@
 /** The list of trials. */
+import { lazy } from 'react';
 import type { Feature } from '@/ui';
-import { TrialsPage } from './trials-page';
+
+const TrialsPage = lazy(() => import('./index').then(({ TrialsPage: page }) => ({ default: page })));
 
 export const feature: Feature = {
   menu: [{ to: '/trials', name: 'Trials', roles: ['admin', 'director', 'faculty', 'trainee'], order: 20 }],

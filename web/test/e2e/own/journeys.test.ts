@@ -1,28 +1,14 @@
 /** Each role on a real server, from sign-in to what it came for. Set GUIDE_PICTURES=1 to keep the guide's pictures. */
-import { mkdirSync, writeFileSync } from 'node:fs';
-import { fileURLToPath } from 'node:url';
-import type { Browser, Page } from 'playwright-core';
+import { writeFileSync } from 'node:fs';
+import type { Browser } from 'playwright-core';
 import { afterAll, beforeAll, describe, expect, it } from 'vitest';
 import { kShots, launch } from '../browser';
+import { picture } from '../guide-pictures';
 import { at, furnish, kTrainees, Person, scored, tuned, type Programme } from '../programme';
 import { programs, serveReal, type Served } from '../real-server';
 
 const bin = programs('tractus-server', 'tractus-station', 'tractus');
-const kPictures = fileURLToPath(new URL('../../../src/features/guide/pictures/', import.meta.url));
 const [kAda, kBen] = kTrainees;
-
-/** What the guide shows: the upper part of a page, 1200 × 750. */
-async function picture(page: Page, name: string): Promise<void> {
-  await page.setViewportSize({ width: 1200, height: 750 });
-  await page.waitForLoadState('networkidle');
-  await page.waitForTimeout(600);
-  await page.screenshot({ path: `${kShots}guide-${name}.png` });
-  if (process.env.GUIDE_PICTURES) {
-    mkdirSync(kPictures, { recursive: true });
-    await page.screenshot({ path: `${kPictures}${name}.jpg`, type: 'jpeg', quality: 82 });
-  }
-  await page.setViewportSize({ width: 1440, height: 900 });
-}
 
 describe.skipIf(bin === undefined)('on a real server', () => {
   let browser: Browser, served: Served, programme: Programme, assignment: string;

@@ -1,0 +1,21 @@
+import { Card } from '@/ui';
+import { kFirstWeek } from './first-week';
+import styles from './guide.module.css';
+import { Steps } from './steps';
+
+/** A residency's first week, day by day. */
+export function FirstWeekPage() {
+  return (
+    <>
+      <p className={styles.for}>
+        A residency’s first week: 24 residents, two kiosks, one certificate. Every picture was made by a program on a
+        real server with simulated hands.
+      </p>
+      {kFirstWeek.map(({ name, steps }) => (
+        <Card key={name} title={name}>
+          <Steps of={steps} />
+        </Card>
+      ))}
+    </>
+  );
+}
