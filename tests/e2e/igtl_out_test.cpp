@@ -26,7 +26,8 @@ class IgtlOut : public testing::Test {
   void TearDown() override { fs::remove_all(folder_); }
 
   int shell(const std::string& line) {
-    return WEXITSTATUS(std::system(fmt::format("cd {} || exit 9; {}", folder_.string(), line).c_str()));
+    return WEXITSTATUS(
+        std::system(fmt::format("cd {} || exit 9; {}", folder_.string(), line).c_str()));
   }
   std::vector<core::Json> heard(const std::string& file) const {
     std::vector<core::Json> out;
