@@ -47,9 +47,10 @@ std::string plan_text(const std::vector<store::Migration>& steps) {
 Run upgrade_command(CLI::App& command) {
   const auto common = common_options(command);
   command
-      .add_flag("--check",
-                "Try the migrations of this program version, and change nothing. On SQLite they "
-                "run on a copy, which needs as much disk space as the database")
+      .add_flag_function(
+          "--check", [](std::int64_t) {},
+          "Try the migrations of this program version, and change nothing. On SQLite they "
+          "run on a copy, which needs as much disk space as the database")
       ->required();
   return [=]() -> core::Result<int> {
     const auto database = TRY(database_of(common->data));

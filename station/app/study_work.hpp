@@ -2,6 +2,7 @@
 #pragma once
 
 #include "station/app/options.hpp"
+#include "wire/assigned_work.hpp"
 #include "station/session/study_plan.hpp"
 
 namespace tractus::app {

@@ -1,5 +1,6 @@
 /// Studies: their list, one whole, what happened; making one and enrolling participants.
 #include "core/try.hpp"
+#include "db/store/trials/ratings.hpp"
 #include "server/api/backend.hpp"
 #include "server/api/studies/study_json.hpp"
 #include "server/api/studies/study_plan.hpp"
