@@ -2,8 +2,8 @@
 #pragma once
 
 #include "station/app/options.hpp"
-#include "wire/assigned_work.hpp"
 #include "station/session/study_plan.hpp"
+#include "wire/assigned_work.hpp"
 
 namespace tractus::app {
 

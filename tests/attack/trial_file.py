@@ -46,7 +46,7 @@ def trial_bytes(trial_id, case_id, operator, count=560, seed=0, fields=None, bre
               "simulated": False, "device": "sim-rig", "started_utc_us": STARTED_UTC_US + seed * 60_000_000, "rate_Hz": 1000.0,
               "probe": {"travel_m": 0.028}, "extra": {}, "rig": "probing"} | (fields or {})
     end_s = count * 1e-3
-    answer = {"t_s": end_s, "kind": "answer", "detail": {"breach": breach, "wall": None, "confidence": 0.75, "depth_m": 0.021}}
+    answer = {"t_s": end_s, "kind": "answer", "detail": {"breach": breach, "wall": None, "confidence": 0.75, "depth_m": 0.021 if breach else None}}
     payloads = [(b"HEAD", json.dumps(header).encode()), (b"EVNT", b'{"t_s":0.0,"kind":"start","detail":{}}'),
                 (b"SAMP", samples(count, seed)), (b"EVNT", json.dumps(answer).encode()),
                 (b"EVNT", json.dumps({"t_s": end_s, "kind": "end", "detail": {}}).encode())]

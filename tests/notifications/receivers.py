@@ -6,6 +6,7 @@ import hashlib
 import hmac
 import http.server
 import json
+import logging
 import ssl
 import subprocess
 import threading
@@ -13,7 +14,9 @@ import time
 
 from aiosmtpd.controller import Controller
 from aiosmtpd.smtp import SMTP, AuthResult
+from processes import free_port
 
+logging.getLogger("mail.log").setLevel(logging.ERROR)  # it warns of its own attributes
 USER, PASSWORD = "tractus", "a password of the mail server"
 
 
@@ -45,9 +48,9 @@ class MailServer:
                 return SMTP(self.handler, tls_context=context, require_starttls=True, auth_required=True,
                             authenticator=outer.login, timeout=300)
 
-        self.controller = Listener(Handler(), hostname="127.0.0.1", port=0)
+        self.port = free_port()
+        self.controller = Listener(Handler(), hostname="127.0.0.1", port=self.port)
         self.controller.start()
-        self.port = self.controller.server.sockets[0].getsockname()[1]
 
     def login(self, server, session, envelope, mechanism, data):
         right = (data.login.decode(), data.password.decode()) == (USER, PASSWORD)

@@ -23,7 +23,7 @@ from wire import Target  # noqa: E402
 from world import PIN, Setup, World  # noqa: E402
 
 FAKETIME = Path("/usr/lib/x86_64-linux-gnu/faketime/libfaketimeMT.so.1")
-DISK_BYTES, RESERVE_BYTES = 420 << 20, 256 << 20
+DISK_BYTES, RESERVE_BYTES = 1500 << 20, 256 << 20
 
 
 def check(holds, what):
@@ -94,9 +94,9 @@ def disk_full(setup):
             file.write(b"\0" * (free - RESERVE_BYTES // 2))
         health = at.world.admin.ask("GET", "/health")
         check(health.status == 503 and b"disk" in health.body, f"health is 503 and says why: {health.body.decode()[:120]}")
-        other = secrets.token_hex(16)
-        refused = hand_over(at.stations[1], other, at.slot(at.stations[0]), trial_bytes(other, slot, "participant", seed=2))
-        check(refused.status >= 400, f"a new trial is refused before it begins ({refused.status})")
+        ticket = at.stations[0].must("POST", "/work/sign-in", {"badge": "B-1", "pin": PIN})["ticket"]
+        refused = at.stations[0].ask("POST", "/work/next", {"ticket": ticket})
+        check(refused.status == 503 and b"free bytes" in refused.body, f"a new trial is refused before it begins: {refused}")
         check(at.stations[0].ask("POST", f"/uploads/{under_way}/commit").status == 200, "what was under way is taken")
         check(at.trainee.ask("GET", "/session").status == 200 and at.faculty.ask("GET", "/assignments").status == 200, "pages are answered")
         filler.unlink()
@@ -204,6 +204,8 @@ def yesterday(setup):
     for person in (at.faculty, at.trainee, at.world.admin):
         at.world.renew(person)
     check(lost[0] not in at.trials(), "today's trial is not in it")
+    check(hand_over(at.stations[0], *lost[:3]).status == 404, "its place was given to the station after the backup: it is refused at first")
+    check(at.slot(at.stations[0]) == lost[1], "the trainee signs in at that station, which gets the same place again")
     answer = hand_over(at.stations[0], *lost[:3])
     check(answer.status == 200 and lost[0] in at.trials(), f"the station hands it over again ({answer.status})")
     check(at.verified(data=restored).returncode == 0, "and verify holds")

@@ -142,6 +142,16 @@ TEST_P(Studies, GiveOneParticipantToOneStationAtATime) {
   EXPECT_TRUE(take("s2", 1));
 }
 
+TEST_P(Studies, AStationWhoseAccessWasRevokedHoldsNobodyBack) {
+  make(Repetition::at_end);
+  ASSERT_TRUE(take("s1", 2));
+  write([](Writing& tx) { return revoke_station(tx, "s1", 7); });
+  const auto next = take("s2", 1);
+  ASSERT_TRUE(next) << next.error().what;
+  EXPECT_EQ(next->slots[0].position, 0);
+  EXPECT_EQ(states(), "ta wb wb ");
+}
+
 TEST_P(Studies, HandOutNothingWhilePaused) {
   make(Repetition::at_end);
   const auto set = [&](bool whole, StudyState state) {

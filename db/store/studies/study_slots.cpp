@@ -167,6 +167,34 @@ core::Result<void> give(Writing& tx, Slot& slot, const std::string& station_id,
   return add_study_event(tx, slot.study_id, stamp, "taken", &slot);
 }
 
+/// A slot that a station held waits again; what was drilled in it and not felt is discounted.
+core::Result<void> release_slot(Writing& tx, const Slot& slot, const AuditStamp& stamp) {
+  AuditStamp unfelt = stamp;
+  unfelt.reason = "freed before its channel was felt";
+  TRY(discount(tx, slot, unfelt));
+  TRY(set_slot(tx, slot.id, SlotState::waiting, std::nullopt, stamp.at_utc_us));
+  return add_study_event(tx, slot.study_id, stamp, "released", &slot);
+}
+
+/// The participant's slots that are not done. What a station holds whose access was revoked (it was
+/// stolen, say) is released here: its trial can no longer be handed over.
+core::Result<std::vector<Slot>> open_slots(Writing& tx, const SeriesId& id,
+                                           const std::string& participant,
+                                           const AuditStamp& stamp) {
+  const auto lost = TRY(slots_where(tx,
+                                    "join stations s on s.id = k.station_id where k.study_id = ? "
+                                    "and k.participant = ? and k.state = 'taken' and "
+                                    "s.revoked_utc_us is not null",
+                                    {id.text(), participant}));
+  AuditStamp revoked = stamp;
+  revoked.reason = "access of its station was revoked";
+  for (const Slot& slot : lost) TRY(release_slot(tx, slot, revoked));
+  return slots_where(tx,
+                     "where k.study_id = ? and k.participant = ? and "
+                     "k.state in ('waiting', 'taken') order by k.position, k.attempt",
+                     {id.text(), participant});
+}
+
 core::Result<std::uint64_t> planned_of(Reading& tx, const std::string& study_id,
                                        const std::string& participant) {
   auto rows =
@@ -192,10 +220,7 @@ core::Result<Taken> take_slots(Writing& tx, const SeriesId& id, const Participan
   auto study = TRY(study_of(tx, id));
   if (study.state == StudyState::paused) return paused("study " + id.text());
   if (participant.state == StudyState::paused) return paused("participant " + participant.name);
-  auto open = TRY(slots_where(tx,
-                              "where k.study_id = ? and k.participant = ? and "
-                              "k.state in ('waiting', 'taken') order by k.position, k.attempt",
-                              {id.text(), participant.name}));
+  auto open = TRY(open_slots(tx, id, participant.name, stamp));
   for (const Slot& slot : open)
     if (slot.station_id && *slot.station_id != station_id)
       return core::Error{
@@ -215,13 +240,7 @@ core::Result<std::uint64_t> release_slots(Writing& tx, const SeriesId& id,
   auto held =
       TRY(slots_where(tx, "where k.study_id = ? and k.participant = ? and k.state = 'taken'",
                       {id.text(), participant}));
-  AuditStamp unfelt = stamp;
-  unfelt.reason = "freed before its channel was felt";
-  for (const Slot& slot : held) {
-    TRY(discount(tx, slot, unfelt));
-    TRY(set_slot(tx, slot.id, SlotState::waiting, std::nullopt, stamp.at_utc_us));
-    TRY(add_study_event(tx, id.text(), stamp, "released", &slot));
-  }
+  for (const Slot& slot : held) TRY(release_slot(tx, slot, stamp));
   return held.size();
 }
 
