@@ -15,6 +15,7 @@
 #include "station/app/study_work.hpp"
 #include "station/app/trial_epilogue.hpp"
 #include "station/rig/surgeon.hpp"
+#include "station/session/study_plan.hpp"
 #include "study/sealed_law.hpp"
 
 namespace tractus {

@@ -22,8 +22,8 @@ struct Programme {
   std::vector<std::vector<store::CohortTrial>> trials;  ///< [trainee][attempt], as cohort.attempts
   CriteriaHistory criteria;                             ///< of the programme
   std::map<std::string, CurriculumNext> next;           ///< by the trainee's name
-  std::set<std::string>
-      unlinked;  ///< trials that are rated blind: beside a name, without id and time
+  /// Trials that are rated blind: beside a name they have neither id nor time.
+  std::set<std::string> unlinked;
   Backend* backend;
 };
 

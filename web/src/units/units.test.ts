@@ -23,6 +23,7 @@ import {
   share,
   shownUnit,
   tickLabels,
+  timeZone,
 } from '@/units';
 
 const plain = (text: string) => text.replaceAll('\u202f', ' ');
@@ -65,6 +66,16 @@ describe('a duration', () => {
     [3720, '1 h 02 min'],
   ])('of %d s reads %s', (value, text) => {
     expect(plain(formatDuration(second(value)))).toBe(text);
+  });
+});
+
+describe('the time zone', () => {
+  it.each([
+    [-120, /, UTC\+2$/],
+    [-330, /, UTC\+5:30$/],
+    [210, /, UTC−3:30$/],
+  ])('of which local time is %d min ahead is named beside times', (getTimezoneOffset, text) => {
+    expect(timeZone({ getTimezoneOffset: () => getTimezoneOffset } as unknown as Date)).toMatch(text);
   });
 });
 
