@@ -195,6 +195,7 @@ Result<LabResult> diagnosed(const Case& opened, const DiagnoseRequest& wish,
   out.content.diagnosis = std::move(diagnosis);
   return out;
 }
+  out.content.discovery = out.discovery;
 
 Result<LabResult> fitted(const Case& opened, std::vector<std::string> effects, int threads,
                          const core::Progress& progress) {
