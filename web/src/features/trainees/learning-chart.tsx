@@ -3,7 +3,7 @@ import type { MetricFacts, Trainee } from '@/api';
 import { curve, Plane } from '@/charts';
 import { say } from '@/language';
 import { Select } from '@/ui';
-import { formatFigure, formatShare, measureDigits, share, shownUnit, type Share } from '@/units';
+import { formatFigure, formatShare, share, shownUnit, shownValue, type Share } from '@/units';
 import { runningShare } from './standing';
 import styles from './trainees.module.css';
 
@@ -62,9 +62,7 @@ function RightChart({ trainee }: { readonly trainee: Trainee }) {
 function ScoreChart({ trainee, metric }: { readonly trainee: Trainee; readonly metric: MetricFacts }) {
   const points = trainee.attempts.flatMap(({ number, scores }) => {
     const value = scores[metric.id];
-    return value === null || value === undefined
-      ? []
-      : [{ number, value, shown: Number(measureDigits(value, metric.unit).replaceAll(/[^\d.-]/g, '')) }];
+    return value === null || value === undefined ? [] : [{ number, value, shown: shownValue(value, metric.unit) }];
   });
   const fit = trainee.scores.find(({ score }) => score === metric.id);
   const last = Math.max(trainee.attempts.length, 1);
