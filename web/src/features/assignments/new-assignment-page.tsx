@@ -45,7 +45,7 @@ function useItems(): { items: Item[] | undefined; failed: Error | null; retry: (
       .map(({ id, name }) => ({ key: `scenario ${id}`, title: name, rig: 'probing' as const, case_id: id })),
     ...scenarios.data.tuned.map(({ kind, name }) => ({
       key: `tuned ${kind}`,
-      title: `${name} (built-in)`,
+      title: say('{name} (built-in)', { name }),
       rig: 'probing' as const,
       tuned: kind,
     })),
@@ -121,7 +121,7 @@ function People({ draft, change }: { readonly draft: Draft; readonly change: Cha
     );
   const options = cohorts.data.cohorts.map(({ id, name, trainees }) => ({
     value: id,
-    text: `${name}, ${formatCount(trainees)} ${trainees === 1 ? 'trainee' : 'trainees'}`,
+    text: say('{name}, {trainees, plural, one {# trainee} other {# trainees}}', { name, trainees }),
   }));
   const trainees = members.data?.people.filter(({ part, state }) => part === 'trainee' && state === 'active') ?? [];
   return (
@@ -129,7 +129,7 @@ function People({ draft, change }: { readonly draft: Draft; readonly change: Cha
       <Select
         label={say('Cohort (includes later members)')}
         value={draft.cohort}
-        options={[{ value: '', text: 'none' }, ...options]}
+        options={[{ value: '', text: say('none') }, ...options]}
         onChange={(event) => change({ cohort: event.target.value })}
       />
       <Select

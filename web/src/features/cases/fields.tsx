@@ -115,7 +115,7 @@ export function BreachFields({
         label={say('Channel')}
         value={plan.whole ? 'planned' : 'drilled'}
         options={[
-          { value: 'drilled', text: 'pre-drilled' },
+          { value: 'drilled', text: say('pre-drilled') },
           { value: 'planned', text: say('trainee drills') },
         ]}
         onChange={(event) => onWhole(event.target.value === 'planned')}

@@ -88,7 +88,7 @@ export function CohortsPage() {
               label={say('Away means no trial for')}
               value={String(days)}
               onChange={(event) => setDays(Number(event.target.value))}
-              options={kDays.map((one) => ({ value: String(one), text: `${one} days` }))}
+              options={kDays.map((one) => ({ value: String(one), text: say('{count} days', { count: one }) }))}
             />
           </span>
         }
@@ -96,7 +96,7 @@ export function CohortsPage() {
         <DataTable<Member>
           address=""
           caption={say('Trainees of the cohorts')}
-          order="behind first, then longest away"
+          order={say('behind first, then longest away')}
           minWidth={760}
           rows={all?.filter(isShown)}
           keyOf={(one) => `${one.cohort} ${one.trainee}`}
