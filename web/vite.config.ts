@@ -67,7 +67,7 @@ export default defineConfig({
   },
   test: {
     environment: 'jsdom',
-    include: ['src/**/*.test.{ts,tsx}', 'test/fixture/*.test.ts'],
+    include: ['src/**/*.test.{ts,tsx}', 'test/fixture/*.test.ts', 'test/language/*.test.ts'],
     exclude: [...configDefaults.exclude, 'test/e2e/**'],
     restoreMocks: true,
   },

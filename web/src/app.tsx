@@ -4,6 +4,7 @@ import { Suspense, type ReactNode } from 'react';
 import { Link, Redirect, Route, Switch, useLocation } from 'wouter';
 import { ApiError, endSession, onSessionEnd, sessionQuery } from '@/api';
 import { Account, SessionGate } from '@/features/session';
+import { say, useLanguage } from '@/language';
 import { type Feature, Notice, Shell, Skeleton, useTitle } from '@/ui';
 import styles from './app.module.css';
 import { Fault } from './fault';
@@ -49,7 +50,7 @@ function Brand() {
         Tractus
       </Link>
       {role === undefined ? null : (
-        <nav aria-label="Pages" className={styles.places}>
+        <nav aria-label={say('Pages')} className={styles.places}>
           {open(role).map(({ to, name }) => (
             <Link
               key={to}
@@ -57,7 +58,7 @@ function Brand() {
               className={styles.place}
               aria-current={at === to || at.startsWith(`${to}/`) ? 'page' : undefined}
             >
-              {name}
+              {say(name)}
             </Link>
           ))}
         </nav>
@@ -73,13 +74,13 @@ function Home() {
 }
 
 function NotFound() {
-  useTitle('Page not found');
+  useTitle(say('Page not found'));
   return (
     <div className={styles.narrow}>
-      <h1>Page not found</h1>
-      <p>Check the address. The page may have been removed.</p>
+      <h1>{say('Page not found')}</h1>
+      <p>{say('Check the address. The page may have been removed.')}</p>
       <p>
-        <Link href="/">Go to the start page</Link>
+        <Link href="/">{say('Go to the start page')}</Link>
       </p>
     </div>
   );
@@ -88,7 +89,7 @@ function NotFound() {
 function Loading() {
   return (
     <div className={styles.loading} role="status">
-      <span className="hidden-visually">Loading</span>
+      <span className="hidden-visually">{say('Loading')}</span>
       <Skeleton height="40px" width="320px" />
     </div>
   );
@@ -123,13 +124,14 @@ function Framed({ children }: { readonly children: ReactNode }) {
 }
 
 export function App({ client }: { readonly client: QueryClient }) {
+  const spoken = useLanguage();
   return (
     <QueryClientProvider client={client}>
-      <Framed>
+      <Framed key={spoken}>
         <Fault
           fallback={
-            <Notice tone="bad" title="This page stopped working.">
-              Reload the page. If the error occurs again, tell the administrator of this server what you did.
+            <Notice tone="bad" title={say('This page stopped working.')}>
+              {say('Reload the page. If the error occurs again, tell the administrator of this server what you did.')}
             </Notice>
           }
         >

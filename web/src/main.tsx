@@ -2,6 +2,7 @@ import { StrictMode } from 'react';
 import { createRoot } from 'react-dom/client';
 import { sessionQuery } from './api';
 import { App, makeClient } from './app';
+import { preferredLanguage, speak } from './language';
 import './ui/tokens.css';
 import './ui/base.css';
 
@@ -14,10 +15,11 @@ const show = () =>
       <App client={client} />
     </StrictMode>,
   );
-// The menu depends on who is signed in: the first picture waits for that, or it would jump. Not for long.
+// The menu depends on who is signed in, its words on the language: the first picture waits for both, or it would jump.
+// Not for long; a catalogue that comes later changes the page then, one that does not come leaves it in English.
 const kPatience_ms = 700;
 void Promise.race([
-  client.prefetchQuery(sessionQuery),
+  Promise.all([client.prefetchQuery(sessionQuery), speak(preferredLanguage()).catch(() => undefined)]),
   new Promise((done) => {
     setTimeout(done, kPatience_ms);
   }),

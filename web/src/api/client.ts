@@ -1,5 +1,7 @@
 /** One way to the server: same origin, cookie, time-out, and every failure as an ApiError with a sentence for a person. */
 import * as v from 'valibot';
+import { say } from '@/language';
+import { errorText } from './error-text';
 import { nextSignIn } from './session-end';
 
 const kRoot = '/api/v1';
@@ -77,7 +79,7 @@ async function send(path: string, request: Request): Promise<Response> {
     const ended = reason instanceof ApiError && reason.code === 'unauthorised' && !path.startsWith(kSession);
     if (!ended) throw reason;
     if (await nextSignIn(request.signal)) return send(path, request);
-    throw new ApiError('refused', 'Another person has signed in.');
+    throw new ApiError('refused', say('Another person has signed in.'));
   }
 }
 
@@ -122,7 +124,7 @@ async function sendOnce(path: string, request: Request): Promise<Response> {
     if (signal?.aborted) throw reason;
     throw new ApiError(
       'unreachable',
-      'The server does not answer. Check that it is running and that this computer is connected to the network.',
+      say('The server does not answer. Check that it is running and that this computer is connected to the network.'),
     );
   }
   if (response.ok) return response;
@@ -132,7 +134,9 @@ async function sendOnce(path: string, request: Request): Promise<Response> {
 /** What a refusal says. */
 function failureOf(status: number, json: unknown, retryAfter: string | null = null): ApiError {
   const failure = v.safeParse(errorSchema, json);
-  const text = failure.success ? withoutPointer(failure.output.error) : `The server answered with status ${status}.`;
+  const text = failure.success
+    ? errorText(failure.output.code, withoutPointer(failure.output.error))
+    : say('The server answered with status {status}.', { status });
   const needsCode = failure.success && failure.output.code === 'code_needed';
   return new ApiError(
     needsCode ? 'code_needed' : codeOf(status),
@@ -157,7 +161,10 @@ function read<Schema extends v.GenericSchema>(schema: Schema, json: unknown): v.
   if (parsed.success) return parsed.output;
   const [issue] = parsed.issues;
   const where = v.getDotPath(issue) ?? 'answer';
-  throw new ApiError('unreadable', `The server's answer cannot be read: ${where}: ${issue.message}`);
+  throw new ApiError(
+    'unreadable',
+    say("The server's answer cannot be read: {where}: {why}", { where, why: issue.message }),
+  );
 }
 
 /** Sends a file and says what share of it has gone: fetch does not tell. */
@@ -175,7 +182,7 @@ export function sendFile<Schema extends v.GenericSchema>(
     wire.setRequestHeader('X-Tractus', '1');
     wire.upload.onprogress = ({ loaded, total }) => onShare(total > 0 ? loaded / total : 0);
     wire.onerror = () =>
-      reject(new ApiError('unreachable', 'The connection broke before the file was there. Send it again.'));
+      reject(new ApiError('unreachable', say('The connection broke before the file was there. Send it again.')));
     wire.onload = () => {
       let json: unknown;
       try {

@@ -1,6 +1,7 @@
 /** The answer: touch the wall on the unrolled tract, then say how sure you are. */
 import { useState, type MouseEvent } from 'react';
-import { Button } from '@/ui';
+import { marked, say } from '@/language';
+import { Button, wallName } from '@/ui';
 import { formatLength, formatShare, metre, share } from '@/units';
 import type { Answer, Send, Wall } from './station';
 import styles from './kiosk.module.css';
@@ -14,11 +15,11 @@ interface Props {
 const kSides = ['medial', 'superior', 'lateral', 'inferior'] as const;
 const kSure = [0, 0.25, 0.5, 0.75, 1] as const;
 const kSureWords: Record<(typeof kSure)[number], string> = {
-  0: 'a guess',
-  0.25: 'unsure',
-  0.5: 'half sure',
-  0.75: 'quite sure',
-  1: 'certain',
+  0: marked('a guess'),
+  0.25: marked('unsure'),
+  0.5: marked('half sure'),
+  0.75: marked('quite sure'),
+  1: marked('certain'),
 };
 
 /** Nothing is chosen yet; no wall is broken; or this wall, and how deep. */
@@ -47,8 +48,8 @@ export function AnswerScreen({ rig, length_m, send }: Props) {
   };
   return (
     <section className={styles.answer}>
-      <h1>Where is a breach?</h1>
-      <p>Touch the wall of the unrolled tract: the entry is at the top.</p>
+      <h1>{say('Where is a breach?')}</h1>
+      <p>{say('Touch the wall of the unrolled tract: the entry is at the top.')}</p>
       <div className={styles.tract}>
         <div className={styles.depths} aria-hidden="true">
           <span>0</span>
@@ -61,7 +62,7 @@ export function AnswerScreen({ rig, length_m, send }: Props) {
             pressed={choice?.wall === side}
             onClick={(event) => setChoice({ wall: side, share: touchedAt(event) })}
           >
-            {side}
+            {wallName(side)}
             {choice?.wall === side && choice.share !== null && rig === 'probing' ? (
               <span className={styles.mark} style={{ top: `${String(choice.share * 100)}%` }} aria-hidden="true" />
             ) : null}
@@ -72,7 +73,7 @@ export function AnswerScreen({ rig, length_m, send }: Props) {
           pressed={choice?.wall === 'anterior'}
           onClick={() => setChoice({ wall: 'anterior', share: 1 })}
         >
-          bottom (anterior)
+          {say('bottom (anterior)')}
         </Button>
       </div>
       <Button
@@ -80,20 +81,20 @@ export function AnswerScreen({ rig, length_m, send }: Props) {
         pressed={choice?.wall === null}
         onClick={() => setChoice({ wall: null, share: null })}
       >
-        No breach
+        {say('No breach')}
       </Button>
       <fieldset className={styles.sure}>
-        <legend>How sure are you?</legend>
+        <legend>{say('How sure are you?')}</legend>
         {kSure.map((value) => (
           <Button key={value} pressed={sure === value} onClick={() => setSure(value)}>
-            {formatShare(share(value))} <small>{kSureWords[value]}</small>
+            {formatShare(share(value))} <small>{say(kSureWords[value])}</small>
           </Button>
         ))}
       </fieldset>
       <div className={styles.give}>
         <p role="status">
-          {choice === undefined ? 'Touch a wall, or “No breach”.' : chosenText(choice.wall, deep)}
-          {choice !== undefined && sure === undefined ? ' Now say how sure you are.' : ''}
+          {choice === undefined ? say('Touch a wall, or “No breach”.') : chosenText(choice.wall, deep)}
+          {choice !== undefined && sure === undefined ? ` ${say('Now say how sure you are.')}` : ''}
         </p>
         <Button
           look="solid"
@@ -101,7 +102,7 @@ export function AnswerScreen({ rig, length_m, send }: Props) {
           disabled={choice === undefined || sure === undefined}
           onClick={give}
         >
-          Give the answer
+          {say('Give the answer')}
         </Button>
       </div>
     </section>
@@ -109,6 +110,8 @@ export function AnswerScreen({ rig, length_m, send }: Props) {
 }
 
 function chosenText(wall: Wall | null, depth_m: number | undefined): string {
-  if (wall === null) return 'No breach.';
-  return depth_m === undefined ? `Breach: ${wall}.` : `Breach: ${wall}, ${formatLength(metre(depth_m), 0)} deep.`;
+  if (wall === null) return say('No breach.');
+  return depth_m === undefined
+    ? say('Breach: {wall}.', { wall: wallName(wall) })
+    : say('Breach: {wall}, {depth} deep.', { wall: wallName(wall), depth: formatLength(metre(depth_m), 0) });
 }

@@ -1,4 +1,5 @@
 /** What went wrong, in words for whoever stands there, and what they may do. */
+import { marked, say } from '@/language';
 import { Button } from '@/ui';
 import type { Connection, FaultKind, Send, State } from './station';
 import { useBadge } from './typed';
@@ -15,41 +16,49 @@ interface Words {
 
 const kWords: Record<FaultKind, Words> = {
   interrupted: {
-    title: 'A trial was interrupted',
-    todo: 'The station lost power or was started again in the middle of a trial. What was recorded is kept and is sent by itself. Sign in to go on.',
+    title: marked('A trial was interrupted'),
+    todo: marked(
+      'The station lost power or was started again in the middle of a trial. What was recorded is kept and is sent by itself. Sign in to go on.',
+    ),
   },
   timed_out: {
-    title: 'You were signed out',
-    todo: 'Nobody touched the screen for a while. Nothing is lost. Sign in again to go on.',
+    title: marked('You were signed out'),
+    todo: marked('Nobody touched the screen for a while. Nothing is lost. Sign in again to go on.'),
   },
   network: {
-    title: 'No network',
-    todo: 'The server does not answer. Trials that you did are safe at this station and are sent later. Wait a minute and try again; if it stays, tell a technician.',
-    retry: 'Try again',
+    title: marked('No network'),
+    todo: marked(
+      'The server does not answer. Trials that you did are safe at this station and are sent later. Wait a minute and try again; if it stays, tell a technician.',
+    ),
+    retry: marked('Try again'),
   },
   locked: {
-    title: 'Too many wrong PINs',
-    todo: 'Wait three minutes before the next try. If you forgot your PIN, ask the faculty for a new one.',
+    title: marked('Too many wrong PINs'),
+    todo: marked('Wait three minutes before the next try. If you forgot your PIN, ask the faculty for a new one.'),
   },
   device: {
-    title: 'The device does not work',
-    todo: 'Let go of the handle. Look whether the device is switched on and plugged in. If “Try again” does not help, tell a technician.',
-    retry: 'Try again',
+    title: marked('The device does not work'),
+    todo: marked(
+      'Let go of the handle. Look whether the device is switched on and plugged in. If “Try again” does not help, tell a technician.',
+    ),
+    retry: marked('Try again'),
   },
   emergency_stop: {
-    title: 'Emergency stop',
-    todo: 'Everything is without force. When it is safe: release the red button, press reset at the rig, then go on here.',
-    retry: 'It is safe: go on',
+    title: marked('Emergency stop'),
+    todo: marked(
+      'Everything is without force. When it is safe: release the red button, press reset at the rig, then go on here.',
+    ),
+    retry: marked('It is safe: go on'),
   },
   stopped: {
-    title: 'Stopped by a supervisor',
-    todo: 'Let go of the handle and speak with your supervisor before you go on.',
-    retry: 'Go on',
+    title: marked('Stopped by a supervisor'),
+    todo: marked('Let go of the handle and speak with your supervisor before you go on.'),
+    retry: marked('Go on'),
   },
   work: {
-    title: 'This trial cannot be done here',
-    todo: 'It is not your fault, and nothing is lost. Tell the faculty or a technician what stands below.',
-    retry: 'Try again',
+    title: marked('This trial cannot be done here'),
+    todo: marked('It is not your fault, and nothing is lost. Tell the faculty or a technician what stands below.'),
+    retry: marked('Try again'),
   },
 };
 
@@ -58,7 +67,7 @@ function SignIn({ send }: { readonly send: Send }) {
   useBadge(send);
   return (
     <Button look="solid" className={styles.main_button} onClick={() => send({ command: 'back' })}>
-      Sign in
+      {say('Sign in')}
     </Button>
   );
 }
@@ -75,19 +84,21 @@ export function FaultScreen({
   const { title, todo, retry } = kWords[fault.kind];
   return (
     <section className={styles.fault} data-fault={fault.kind} role="alert">
-      <h1>{title}</h1>
-      <p>{todo}</p>
+      <h1>{say(title)}</h1>
+      <p>{say(todo)}</p>
       {waiting > 0 ? (
-        <p>{waiting === 1 ? '1 trial is' : `${String(waiting)} trials are`} kept here and not sent yet.</p>
+        <p>
+          {say('{waiting, plural, one {# trial is} other {# trials are}} kept here and not sent yet.', { waiting })}
+        </p>
       ) : null}
       <div className={styles.row}>
         {fault.signed_in ? (
           <>
             <Button look="solid" className={styles.main_button} onClick={() => send({ command: 'retry' })}>
-              {retry ?? 'Go on'}
+              {say(retry ?? marked('Go on'))}
             </Button>
             <Button className={styles.wide} onClick={() => send({ command: 'sign_out' })}>
-              Sign out
+              {say('Sign out')}
             </Button>
           </>
         ) : (
@@ -109,15 +120,17 @@ export function LostScreen({
   const elsewhere = connection === 'elsewhere';
   return (
     <section className={styles.fault} data-fault={connection} role="alert">
-      <h1>{elsewhere ? 'The station has ended, or is shown elsewhere' : 'The station does not answer'}</h1>
+      <h1>{elsewhere ? say('The station has ended, or is shown elsewhere') : say('The station does not answer')}</h1>
       <p>
         {elsewhere
-          ? 'Another window shows this station, or it was switched off in good order.'
-          : 'Let go of the handle. The station starts again by itself in a moment; what was recorded is kept. If this stays for a minute, tell a technician.'}
+          ? say('Another window shows this station, or it was switched off in good order.')
+          : say(
+              'Let go of the handle. The station starts again by itself in a moment; what was recorded is kept. If this stays for a minute, tell a technician.',
+            )}
       </p>
       {elsewhere ? (
         <Button look="solid" className={styles.main_button} onClick={onConnect}>
-          Show it here
+          {say('Show it here')}
         </Button>
       ) : null}
     </section>

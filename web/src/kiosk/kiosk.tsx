@@ -1,4 +1,5 @@
 /** The station's full-screen page: it shows the station's state and sends what a person touches; it decides nothing. */
+import { say, useLanguage } from '@/language';
 import { Badge } from '@/ui';
 import { AnswerScreen } from './answer-screen';
 import { FaultScreen, LostScreen } from './fault-screens';
@@ -13,25 +14,25 @@ function Screen({ state, send }: { readonly state: State; readonly send: Send })
     case 'badge':
       return <BadgeScreen study={state.study} notice={state.notice} technician={state.technician} send={send} />;
     case 'pin':
-      return <PinScreen title="Type your PIN" notice={state.notice} send={send} />;
+      return <PinScreen title={say('Type your PIN')} notice={state.notice} send={send} />;
     case 'technician_pin':
-      return <PinScreen title="Technician’s PIN" notice={state.notice} send={send} />;
+      return <PinScreen title={say('Technician’s PIN')} notice={state.notice} send={send} />;
     case 'technician':
       return <TechnicianScreen {...state} send={send} />;
     case 'testing':
       return <TestScreen text={state.test?.text ?? ''} waits={state.test?.waits ?? false} send={send} />;
     case 'checking':
-      return <WaitScreen text={state.study ? 'Checking your number' : 'Checking badge and PIN'} />;
+      return <WaitScreen text={state.study ? say('Checking your number') : say('Checking badge and PIN')} />;
     case 'work':
       return state.work ? <WorkScreen work={state.work} button={state.button} send={send} /> : null;
     case 'preparing':
-      return <WaitScreen text="Getting ready" />;
+      return <WaitScreen text={say('Getting ready')} />;
     case 'running':
       return state.live ? <RunningScreen live={state.live} work={state.work} send={send} /> : null;
     case 'answer':
       return state.question ? <AnswerScreen {...state.question} send={send} /> : null;
     case 'saving':
-      return <WaitScreen text="Saving your trial" />;
+      return <WaitScreen text={say('Saving your trial')} />;
     case 'result':
       return state.outcome ? <ResultScreen study={state.study} outcome={state.outcome} send={send} /> : null;
     case 'paused':
@@ -45,15 +46,18 @@ function Screen({ state, send }: { readonly state: State; readonly send: Send })
 
 export function Kiosk() {
   const { state, connection, send, connect } = useStation();
+  const spoken = useLanguage();
   const known = connection === 'open' ? state : null;
   return (
-    <div className={styles.page} data-screen={known ? known.screen : connection}>
+    <div key={spoken} className={styles.page} data-screen={known ? known.screen : connection}>
       <header className={styles.bar}>
         <strong>Tractus</strong>
-        {known?.simulated ? <Badge tone="warn">SIMULATED device</Badge> : null}
+        {known?.simulated ? <Badge tone="warn">{say('SIMULATED device')}</Badge> : null}
         {known && known.waiting_trials > 0 ? (
           <Badge tone="neutral">
-            {known.waiting_trials === 1 ? '1 trial waits' : `${String(known.waiting_trials)} trials wait`} to be sent
+            {say('{waiting, plural, one {# trial waits} other {# trials wait}} to be sent', {
+              waiting: known.waiting_trials,
+            })}
           </Badge>
         ) : null}
         <span className={styles.name}>{known?.name}</span>

@@ -1,5 +1,6 @@
 /** Badge and PIN, by a scanner that types, by keys or by touch. */
-import { Button } from '@/ui';
+import { say } from '@/language';
+import { Button, LanguageSwitch } from '@/ui';
 import type { Send } from './station';
 import { useBadge, useTyped } from './typed';
 import styles from './kiosk.module.css';
@@ -24,7 +25,7 @@ function Pad({ onDigit, onDelete, onEnter, ready, enter }: PadProps) {
           {key}
         </Button>
       ))}
-      <Button className={styles.key} label="Delete" onClick={onDelete}>
+      <Button className={styles.key} label={say('Delete')} onClick={onDelete}>
         ⌫
       </Button>
       <Button className={styles.key} onClick={() => onDigit('0')}>
@@ -50,24 +51,25 @@ export function BadgeScreen({ study, notice, technician, send }: BadgeProps) {
   return (
     <section className={styles.columns}>
       <div className={styles.words}>
-        <h1>{study ? 'Type your participant number' : 'Scan your badge'}</h1>
+        <h1>{study ? say('Type your participant number') : say('Scan your badge')}</h1>
         <p>
           {study
-            ? 'It stands on the sheet that you were given for this study.'
-            : 'Hold the badge to the scanner, or type its number.'}
+            ? say('It stands on the sheet that you were given for this study.')
+            : say('Hold the badge to the scanner, or type its number.')}
         </p>
         {notice === '' ? null : <p role="alert">{notice}</p>}
-        <output className={styles.typed} aria-label={study ? 'Participant number' : 'Badge number'}>
+        <output className={styles.typed} aria-label={study ? say('Participant number') : say('Badge number')}>
           {badge === '' ? ' ' : badge}
         </output>
+        <LanguageSwitch />
         {technician ? (
           <Button look="quiet" className={styles.small} onClick={() => send({ command: 'technician' })}>
-            Technician
+            {say('Technician')}
           </Button>
         ) : null}
       </div>
       <Pad
-        enter="Next"
+        enter={say('Next')}
         ready={badge !== ''}
         onDigit={add}
         onDelete={() => setBadge((text) => text.slice(0, -1))}
@@ -91,16 +93,20 @@ export function PinScreen({ title, notice, send }: PinProps) {
     <section className={styles.columns}>
       <div className={styles.words}>
         <h1>{title}</h1>
-        {notice === '' ? <p>Nobody else should see it.</p> : <p role="alert">{notice} Try again.</p>}
-        <output className={styles.typed} aria-label="Digits typed">
+        {notice === '' ? (
+          <p>{say('Nobody else should see it.')}</p>
+        ) : (
+          <p role="alert">{say('{notice} Try again.', { notice: say(notice) })}</p>
+        )}
+        <output className={styles.typed} aria-label={say('Digits typed')}>
           {pin === '' ? ' ' : '●'.repeat(pin.length)}
         </output>
         <Button className={styles.wide} onClick={() => send({ command: 'back' })}>
-          Back
+          {say('Back')}
         </Button>
       </div>
       <Pad
-        enter="OK"
+        enter={say('OK')}
         ready={pin.length >= kShortestPin}
         onDigit={add}
         onDelete={() => setPin((text) => text.slice(0, -1))}

@@ -1,5 +1,6 @@
 /** From the next trial to its result. */
-import { Badge, Button, Progress } from '@/ui';
+import { say } from '@/language';
+import { Badge, Button, Progress, wallName } from '@/ui';
 import { formatLength, formatScore, formatShare, formatTime, metre, second, share } from '@/units';
 import type { Result, Send, State, Work } from './station';
 import styles from './kiosk.module.css';
@@ -11,20 +12,20 @@ type Outcome = NonNullable<State['outcome']>;
 function holding({ rig, tool }: Pick<Work, 'rig' | 'tool'>): readonly string[] {
   if (tool === 'burr')
     return [
-      'Hold the handle like a pen, the arm at rest.',
-      'Bring the tip to the entry, then press and hold the button: the burr cuts.',
-      'Let the button go when the channel is deep enough.',
+      say('Hold the handle like a pen, the arm at rest.'),
+      say('Bring the tip to the entry, then press and hold the button: the burr cuts.'),
+      say('Let the button go when the channel is deep enough.'),
     ];
   if (rig === 'probing')
     return [
-      'Hold the handle in your palm, in line with your forearm.',
-      'Push forward evenly and turn to and fro.',
-      'Stop pushing when you feel that a wall gives way.',
+      say('Hold the handle in your palm, in line with your forearm.'),
+      say('Push forward evenly and turn to and fro.'),
+      say('Stop pushing when you feel that a wall gives way.'),
     ];
   return [
-    'Hold the handle like a pen, the arm at rest.',
-    'Lead the tip into the channel; feel the bottom first.',
-    'Stroke each wall from the bottom to the entry.',
+    say('Hold the handle like a pen, the arm at rest.'),
+    say('Lead the tip into the channel; feel the bottom first.'),
+    say('Stroke each wall from the bottom to the entry.'),
   ];
 }
 
@@ -52,8 +53,10 @@ export function WorkScreen({
         <p className={styles.small}>{work.assignment}</p>
         <h1>{work.name}</h1>
         <p>
-          Trial {work.number} of {work.planned}.{' '}
-          {work.left === 1 ? 'It is your last one today.' : `You have ${String(work.left)} trials to do.`}
+          {say(
+            'Trial {number} of {planned}. {left, plural, one {It is your last one today.} other {You have # trials to do.}}',
+            { number: work.number, planned: work.planned, left: work.left },
+          )}
         </p>
         <ol className={styles.steps}>
           {holding(work).map((step) => (
@@ -63,14 +66,14 @@ export function WorkScreen({
       </div>
       <div className={styles.actions}>
         <Button look="solid" className={styles.main_button} onClick={() => send({ command: 'start' })}>
-          Start
+          {say('Start')}
         </Button>
-        {button ? <p className={styles.small}>Or press the button of the device.</p> : null}
+        {button ? <p className={styles.small}>{say('Or press the button of the device.')}</p> : null}
         <Button className={styles.wide} onClick={() => send({ command: 'pause' })}>
-          Pause
+          {say('Pause')}
         </Button>
         <Button className={styles.wide} onClick={() => send({ command: 'sign_out' })}>
-          Sign out
+          {say('Sign out')}
         </Button>
       </div>
     </section>
@@ -89,34 +92,34 @@ export function RunningScreen({
   return (
     <section className={styles.columns}>
       <div className={styles.words}>
-        <h1>{work?.tool === 'burr' ? 'Drill' : 'Feel the walls'}</h1>
+        <h1>{work?.tool === 'burr' ? say('Drill') : say('Feel the walls')}</h1>
         <dl className={styles.readings}>
           <div>
-            <dt>Time</dt>
+            <dt>{say('Time')}</dt>
             <dd>{formatTime(second(Math.floor(live.t_s)), 0)}</dd>
           </div>
           {live.depth_m === null ? null : (
             <div>
-              <dt>Depth</dt>
+              <dt>{say('Depth')}</dt>
               <dd>{formatLength(metre(live.depth_m), 0)}</dd>
             </div>
           )}
         </dl>
         {live.progress === null ? (
-          <p>This trial shows no depth.</p>
+          <p>{say('This trial shows no depth.')}</p>
         ) : (
           <>
-            <Progress done={live.progress} of={1} label="Share of the trial's time" />
-            <p>{formatShare(share(live.progress))} of the trial&apos;s time</p>
+            <Progress done={live.progress} of={1} label={say("Share of the trial's time")} />
+            <p>{say("{share} of the trial's time", { share: formatShare(share(live.progress)) })}</p>
           </>
         )}
       </div>
       <div className={styles.actions}>
         <Button className={styles.main_button} onClick={() => send({ command: 'end_trial' })}>
-          I am done
+          {say('I am done')}
         </Button>
         <Button className={styles.wide} onClick={() => send({ command: 'pause' })}>
-          Pause
+          {say('Pause')}
         </Button>
       </div>
     </section>
@@ -124,28 +127,36 @@ export function RunningScreen({
 }
 
 function answerText({ answer, drilled }: Outcome): string {
-  if (drilled) return 'The channel that you drilled is kept. You feel it in a later trial.';
-  if (answer === null) return 'The trial is kept without an answer.';
-  const said = answer.breach ? `breach of the ${answer.wall ?? ''} wall` : 'no breach';
-  return `Your answer: ${said}${answer.confidence === undefined ? '' : `, ${formatShare(share(answer.confidence))} sure`}.`;
+  if (drilled) return say('The channel that you drilled is kept. You feel it in a later trial.');
+  if (answer === null) return say('The trial is kept without an answer.');
+  const wall = answer.wall === null ? '' : wallName(answer.wall);
+  if (answer.confidence === undefined)
+    return answer.breach ? say('Your answer: breach of the {wall} wall.', { wall }) : say('Your answer: no breach.');
+  const sure = formatShare(share(answer.confidence));
+  return answer.breach
+    ? say('Your answer: breach of the {wall} wall, {sure} sure.', { wall, sure })
+    : say('Your answer: no breach, {sure} sure.', { sure });
 }
 
 /** The answer and the scores as the trainee's own page shows them, as far as they are released. */
 function Scores({ result }: { readonly result: Result | null }) {
-  if (result === null || result.state === 'assessing') return <p role="status">The result is being computed…</p>;
-  if (result.state === 'held') return <p>You see the result on your own page once it is released.</p>;
-  if (result.state === 'failed') return <p>The trial could not be assessed. The faculty sees why.</p>;
+  if (result === null || result.state === 'assessing')
+    return <p role="status">{say('The result is being computed…')}</p>;
+  if (result.state === 'held') return <p>{say('You see the result on your own page once it is released.')}</p>;
+  if (result.state === 'failed') return <p>{say('The trial could not be assessed. The faculty sees why.')}</p>;
   return (
     <>
       {result.correct === null ? null : (
         <p>
-          <Badge tone={result.correct ? 'good' : 'bad'}>{result.correct ? '✓ correct' : '✗ not correct'}</Badge>
+          <Badge tone={result.correct ? 'good' : 'bad'}>
+            {result.correct ? say('✓ correct') : say('✗ not correct')}
+          </Badge>
         </p>
       )}
       <dl className={styles.scores}>
         {result.scores.map((score) => (
           <div key={score.label}>
-            <dt>{score.label}</dt>
+            <dt>{say(score.label)}</dt>
             <dd>{formatScore(score)}</dd>
           </div>
         ))}
@@ -164,27 +175,27 @@ export function ResultScreen({ study, outcome, send }: ResultProps) {
   return (
     <section className={styles.columns}>
       <div className={styles.words}>
-        <h1>Trial done</h1>
+        <h1>{say('Trial done')}</h1>
         <p>{answerText(outcome)}</p>
         {outcome.sent ? (
           <>
-            <p>The server has it.</p>
-            {study ? <p>Nobody sees results of this study before all your trials are done.</p> : null}
+            <p>{say('The server has it.')}</p>
+            {study ? <p>{say('Nobody sees results of this study before all your trials are done.')}</p> : null}
             {study || outcome.drilled ? null : <Scores result={outcome.result} />}
           </>
         ) : (
-          <p>The server does not answer. The trial is safe at this station and is sent later by itself.</p>
+          <p>{say('The server does not answer. The trial is safe at this station and is sent later by itself.')}</p>
         )}
       </div>
       <div className={styles.actions}>
         <Button look="solid" className={styles.main_button} onClick={() => send({ command: 'next' })}>
-          Next trial
+          {say('Next trial')}
         </Button>
         <Button className={styles.wide} onClick={() => send({ command: 'pause' })}>
-          Pause
+          {say('Pause')}
         </Button>
         <Button className={styles.wide} onClick={() => send({ command: 'sign_out' })}>
-          Sign out
+          {say('Sign out')}
         </Button>
       </div>
     </section>
@@ -195,16 +206,17 @@ export function ResultScreen({ study, outcome, send }: ResultProps) {
 function PausedTrial({ send }: { readonly send: Send }) {
   return (
     <section className={styles.centre}>
-      <h1>Paused</h1>
+      <h1>{say('Paused')}</h1>
       <p>
-        The handle is without force, and the time of the trial does not pass. Take the tip off the wall before you go
-        on: the force comes back slowly. After 15 minutes the trial ends.
+        {say(
+          'The handle is without force, and the time of the trial does not pass. Take the tip off the wall before you go on: the force comes back slowly. After 15 minutes the trial ends.',
+        )}
       </p>
       <Button look="solid" className={styles.main_button} onClick={() => send({ command: 'resume' })}>
-        Go on
+        {say('Go on')}
       </Button>
       <Button className={styles.wide} onClick={() => send({ command: 'end_trial' })}>
-        I am done
+        {say('I am done')}
       </Button>
     </section>
   );
@@ -214,13 +226,13 @@ export function PausedScreen({ inTrial, send }: { readonly inTrial: boolean; rea
   if (inTrial) return <PausedTrial send={send} />;
   return (
     <section className={styles.centre}>
-      <h1>Paused</h1>
-      <p>After 15 minutes you are signed out. Nothing is lost.</p>
+      <h1>{say('Paused')}</h1>
+      <p>{say('After 15 minutes you are signed out. Nothing is lost.')}</p>
       <Button look="solid" className={styles.main_button} onClick={() => send({ command: 'resume' })}>
-        Go on
+        {say('Go on')}
       </Button>
       <Button className={styles.wide} onClick={() => send({ command: 'sign_out' })}>
-        Sign out
+        {say('Sign out')}
       </Button>
     </section>
   );
@@ -229,10 +241,10 @@ export function PausedScreen({ inTrial, send }: { readonly inTrial: boolean; rea
 export function CompleteScreen({ send }: { readonly send: Send }) {
   return (
     <section className={styles.centre}>
-      <h1>Nothing is left to do</h1>
-      <p>No trial of yours waits for this station now.</p>
+      <h1>{say('Nothing is left to do')}</h1>
+      <p>{say('No trial of yours waits for this station now.')}</p>
       <Button look="solid" className={styles.main_button} onClick={() => send({ command: 'sign_out' })}>
-        Sign out
+        {say('Sign out')}
       </Button>
     </section>
   );

@@ -1,4 +1,5 @@
 import { useEffect, useId, useRef, useState, type FormEvent, type ReactNode } from 'react';
+import { say } from '@/language';
 import { Button } from './button';
 import styles from './dialog.module.css';
 import { Notice } from './notice';
@@ -36,12 +37,12 @@ export function AskDialog({ title, children, action, ready = true, onAction, onC
         <h2 id={id}>{title}</h2>
         {children}
         {failure === null ? null : (
-          <Notice tone="bad" title="The action failed.">
+          <Notice tone="bad" title={say('The action failed.')}>
             {failure}
           </Notice>
         )}
         <div className={styles.buttons}>
-          <Button onClick={onClose}>Cancel</Button>
+          <Button onClick={onClose}>{say('Cancel')}</Button>
           <Button look="solid" type="submit" disabled={busy || !ready}>
             {action}
           </Button>

@@ -11,6 +11,7 @@ import {
 } from '@tanstack/react-table';
 import type { ColumnDef } from '@tanstack/react-table';
 import type { ReactNode } from 'react';
+import { say } from '@/language';
 import { formatCount } from '@/units';
 import { Button } from './button';
 import styles from './data-table.module.css';
@@ -61,7 +62,7 @@ const features = tableFeatures({
 const kSigns = { ascending: '▲', descending: '▼', none: '↕' } as const;
 
 const titleOf = <Row,>({ title, name }: Pick<DataColumn<Row>, 'name' | 'title'>) =>
-  title ?? (typeof name === 'string' ? name : '');
+  say(title ?? (typeof name === 'string' ? name : ''));
 
 /** A column's name as the button that sorts by it; where the name is a term with its definition, the button stands beside it. */
 export function SortHead<Row>({
@@ -81,9 +82,9 @@ export function SortHead<Row>({
         type="button"
         className={styles.sort}
         onClick={onPress}
-        aria-label={plain ? undefined : `Sort by ${titleOf(column)}`}
+        aria-label={plain ? undefined : say('Sort by {column}', { column: titleOf(column) })}
       >
-        {plain ? column.name : null}
+        {plain ? titleOf({ name: column.name }) : null}
         <span aria-hidden="true" className={styles.sign}>
           {kSigns[sorted ?? 'none']}
         </span>
@@ -109,13 +110,17 @@ export function Pages({
   return (
     <nav className={styles.pages} aria-label={label}>
       <Button disabled={page === 0} onClick={() => onPage(page - 1)}>
-        Previous
+        {say('Previous')}
       </Button>
       <span role="status">
-        {formatCount(page * size + 1)}–{formatCount(Math.min(end, of))} of {formatCount(of)}
+        {say('{first}–{last} of {all}', {
+          first: formatCount(page * size + 1),
+          last: formatCount(Math.min(end, of)),
+          all: formatCount(of),
+        })}
       </span>
       <Button disabled={end >= of} onClick={() => onPage(page + 1)}>
-        Next
+        {say('Next')}
       </Button>
     </nav>
   );
@@ -180,12 +185,14 @@ export function DataTable<Row>({
     const press = () => table.getColumn(String(i))?.toggleSorting();
     return { ...column, sorted, name: <SortHead column={column} sorted={sorted} onPress={press} /> };
   });
-  const ordered = sortedBy ? `sorted by ${titleOf(sortedBy)}` : order;
+  const ordered = sortedBy ? say('sorted by {column}', { column: titleOf(sortedBy) }) : order;
   return (
     <div className={styles.stack}>
       {filter ? (
         <div className={styles.tools}>
-          <span role="status">{typed === '' ? '' : `${formatCount(found)} of ${formatCount(lines.length)}`}</span>
+          <span role="status">
+            {typed === '' ? '' : say('{found} of {all}', { found: formatCount(found), all: formatCount(lines.length) })}
+          </span>
           <Field
             label={<span className="hidden-visually">{filter.label}</span>}
             placeholder={filter.label}
@@ -196,19 +203,19 @@ export function DataTable<Row>({
         </div>
       ) : null}
       {partial && (typed !== '' || sortedBy) ? (
-        <p className={styles.muted}>Only the rows loaded so far are searched and sorted.</p>
+        <p className={styles.muted}>{say('Only the rows loaded so far are searched and sorted.')}</p>
       ) : null}
       <Table<Row>
         {...rest}
         columns={headed}
         caption={ordered === undefined ? caption : `${caption}, ${ordered}`}
         rows={rows && matching.slice(shown * pageSize, (shown + 1) * pageSize).map(({ original }) => original.row)}
-        empty={rows?.length === 0 ? empty : 'No rows match.'}
+        empty={rows?.length === 0 ? empty : say('No rows match.')}
       />
       {below ??
         (last > 0 ? (
           <Pages
-            label={`Pages: ${caption}`}
+            label={say('Pages: {caption}', { caption })}
             page={shown}
             size={pageSize}
             of={found}

@@ -1,4 +1,5 @@
 import { useEffect, useId, useRef, useState, type FormEvent } from 'react';
+import { say } from '@/language';
 import { Button } from './button';
 import styles from './dialog.module.css';
 import { Notice } from './notice';
@@ -40,7 +41,7 @@ export function ReasonDialog({ title, text, action, reasonNeeded = false, onActi
         <h2 id={titleId}>{title}</h2>
         <p>{text}</p>
         <div className={styles.reason}>
-          <label htmlFor={reasonId}>Reason{reasonNeeded ? '' : ' (optional)'}</label>
+          <label htmlFor={reasonId}>{reasonNeeded ? say('Reason') : say('Reason (optional)')}</label>
           <textarea
             id={reasonId}
             rows={3}
@@ -51,12 +52,12 @@ export function ReasonDialog({ title, text, action, reasonNeeded = false, onActi
           />
         </div>
         {failure === null ? null : (
-          <Notice tone="bad" title="The action failed.">
+          <Notice tone="bad" title={say('The action failed.')}>
             {failure}
           </Notice>
         )}
         <div className={styles.buttons}>
-          <Button onClick={onClose}>Cancel</Button>
+          <Button onClick={onClose}>{say('Cancel')}</Button>
           <Button look="solid" type="submit" disabled={busy || (reasonNeeded && reason.trim() === '')}>
             {action}
           </Button>

@@ -1,5 +1,6 @@
 import { useRef, type ReactNode } from 'react';
 import { useDropzone } from 'react-dropzone';
+import { say } from '@/language';
 import { Button } from './button';
 import styles from './drop-zone.module.css';
 
@@ -55,10 +56,10 @@ export function DropZone({ label, folder, files: named, choose, onFiles, busy, c
           if (files.length > 0) onFiles(dropped(files));
         }}
       />
-      <p className={styles.text}>{busy ?? (isDragActive ? 'Release to add the files.' : children)}</p>
+      <p className={styles.text}>{busy ?? (isDragActive ? say('Release to add the files.') : children)}</p>
       <div className={styles.buttons}>
         <Button onClick={() => folderInput.current?.click()} disabled={busy !== null}>
-          Choose folder
+          {say('Choose folder')}
         </Button>
         <Button onClick={open} disabled={busy !== null}>
           {choose}

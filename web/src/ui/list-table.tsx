@@ -1,4 +1,5 @@
 import type { ReactNode } from 'react';
+import { say } from '@/language';
 import { formatCount } from '@/units';
 import { Button } from './button';
 import { SortHead } from './data-table';
@@ -15,6 +16,7 @@ export interface ListColumn<Row> extends Omit<Column<Row>, 'sorted'> {
   readonly falls?: boolean;
 }
 
+/** Its words may be marked for translation. */
 export interface ListFilter {
   /** The server's word. */
   readonly name: string;
@@ -55,15 +57,15 @@ function Filters({
   change: (next: Asked) => void;
 }) {
   return filters.map(({ name, label, choices }) => (
-    <div key={name} className={styles.chips} role="group" aria-label={label}>
+    <div key={name} className={styles.chips} role="group" aria-label={say(label)}>
       <span className={styles.label} aria-hidden="true">
-        {label}
+        {say(label)}
       </span>
       {choices.map(({ value, text }) => {
         const on = asked[name] === value;
         return (
           <Button key={value} pressed={on} onClick={() => change({ [name]: on ? undefined : value })}>
-            {text}
+            {say(text)}
           </Button>
         );
       })}
@@ -82,7 +84,9 @@ function headed<Row>(column: ListColumn<Row>, usual: string, asked: Asked, chang
 }
 
 const countText = ({ total, more_than_total }: ListPage, narrowed: boolean): string =>
-  `${formatCount(total)}${more_than_total ? '+' : ''} ${narrowed ? 'found' : 'in all'}`;
+  narrowed
+    ? say('{count} found', { count: `${formatCount(total)}${more_than_total ? '+' : ''}` })
+    : say('{count} in all', { count: `${formatCount(total)}${more_than_total ? '+' : ''}` });
 
 /** A list that the server searches, sorts and cuts into pages; what is shown is in the address. */
 export function ListTable<Row>({
@@ -100,8 +104,8 @@ export function ListTable<Row>({
   const narrowed = (asked.search ?? '') !== '' || filters.some(({ name }) => asked[name] !== undefined);
   const turned = asked.cursor !== undefined;
   let nothing: ReactNode = empty;
-  if (narrowed) nothing = 'No rows match.';
-  if (turned) nothing = 'No rows on this page.';
+  if (narrowed) nothing = say('No rows match.');
+  if (turned) nothing = say('No rows on this page.');
   return (
     <div className={styles.stack}>
       <div className={styles.tools}>
@@ -122,15 +126,15 @@ export function ListTable<Row>({
       </p>
       <Table<Row> {...rest} columns={columns.map((column) => headed(column, usual, asked, change))} empty={nothing} />
       {turned || page?.next ? (
-        <nav className={styles.pages} aria-label={`Pages: ${rest.caption}`}>
+        <nav className={styles.pages} aria-label={say('Pages: {caption}', { caption: rest.caption })}>
           <Button disabled={!turned} onClick={() => change({})}>
-            First
+            {say('First')}
           </Button>
           <Button disabled={!page?.previous} onClick={() => change({ cursor: page?.previous ?? undefined })}>
-            Previous
+            {say('Previous')}
           </Button>
           <Button disabled={!page?.next} onClick={() => change({ cursor: page?.next ?? undefined })}>
-            Next
+            {say('Next')}
           </Button>
         </nav>
       ) : null}

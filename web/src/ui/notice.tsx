@@ -1,4 +1,5 @@
 import type { ReactNode } from 'react';
+import { say } from '@/language';
 import { Button } from './button';
 import styles from './notice.module.css';
 
@@ -15,7 +16,7 @@ export function Notice({ tone = 'info', title, children, onRetry }: Props) {
     <div className={`${styles.notice} ${styles[tone]}`} role={tone === 'bad' ? 'alert' : 'status'}>
       <p className={styles.title}>{title}</p>
       {children === undefined ? null : <div className={styles.text}>{children}</div>}
-      {onRetry ? <Button onClick={onRetry}>Try again</Button> : null}
+      {onRetry ? <Button onClick={onRetry}>{say('Try again')}</Button> : null}
     </div>
   );
 }

@@ -1,4 +1,5 @@
 import { useState } from 'react';
+import { say } from '@/language';
 import { AskDialog } from './ask-dialog';
 import { Button } from './button';
 import { Field } from './field';
@@ -21,42 +22,48 @@ export function SavedViewsBar({ views, save, remove, here, onOpen }: Props) {
   const [name, setName] = useState<string | null>(null);
   const [removing, setRemoving] = useState<SavedViews['views'][number] | null>(null);
   return (
-    <div className={styles.views} role="group" aria-label="Saved views">
+    <div className={styles.views} role="group" aria-label={say('Saved views')}>
       {views.map((view) => (
         <span key={view.id} className={styles.view}>
           <Button pressed={view.search === here} onClick={() => onOpen(view.search)}>
             {view.name}
           </Button>
-          <Button look="quiet" label={`Remove the view ${view.name}`} onClick={() => setRemoving(view)}>
+          <Button
+            look="quiet"
+            label={say('Remove the view {name}', { name: view.name })}
+            onClick={() => setRemoving(view)}
+          >
             ×
           </Button>
         </span>
       ))}
       <Button look="quiet" disabled={here === ''} onClick={() => setName('')}>
-        Save this view…
+        {say('Save this view…')}
       </Button>
       {name === null ? null : (
         <AskDialog
-          title="Save this view"
-          action="Save"
+          title={say('Save this view')}
+          action={say('Save')}
           ready={name.trim() !== ''}
           onAction={() => save(name.trim(), here)}
           onClose={() => setName(null)}
         >
           <p>
-            Search, filters and order are saved under this name, for you alone. A view of the same name is replaced.
+            {say(
+              'Search, filters and order are saved under this name, for you alone. A view of the same name is replaced.',
+            )}
           </p>
-          <Field label="Name" value={name} maxLength={40} onChange={(event) => setName(event.target.value)} />
+          <Field label={say('Name')} value={name} maxLength={40} onChange={(event) => setName(event.target.value)} />
         </AskDialog>
       )}
       {removing === null ? null : (
         <AskDialog
-          title={`Remove the view ${removing.name}?`}
-          action="Remove"
+          title={say('Remove the view {name}?', { name: removing.name })}
+          action={say('Remove')}
           onAction={() => remove(removing.id)}
           onClose={() => setRemoving(null)}
         >
-          <p>The rows of the list stay.</p>
+          <p>{say('The rows of the list stay.')}</p>
         </AskDialog>
       )}
     </div>

@@ -1,6 +1,8 @@
 import type { MouseEvent, ReactNode } from 'react';
+import { marked, say } from '@/language';
 import { timeZone } from '@/units';
 import { Button } from './button';
+import { LanguageSwitch } from './language-switch';
 import styles from './shell.module.css';
 import { setTheme, useTheme, type Theme } from './theme';
 
@@ -12,7 +14,7 @@ interface Props {
 }
 
 const kNext: Record<Theme, Theme> = { system: 'light', light: 'dark', dark: 'system' };
-const kThemeName: Record<Theme, string> = { system: 'As system', light: 'Light', dark: 'Dark' };
+const kThemeName: Record<Theme, string> = { system: marked('As system'), light: marked('Light'), dark: marked('Dark') };
 const kThemeSign: Record<Theme, string> = { system: '◐', light: '○', dark: '●' };
 
 function toContent(event: MouseEvent): void {
@@ -26,7 +28,7 @@ export function Shell({ account, home, children }: Props) {
   return (
     <>
       <a className={styles.skip} href="#content" onClick={toContent}>
-        Skip to content
+        {say('Skip to content')}
       </a>
       <header className={styles.header}>
         <div className={styles.bar}>
@@ -35,12 +37,12 @@ export function Shell({ account, home, children }: Props) {
             {account}
             <Button
               look="quiet"
-              title={`Theme. Next: ${kThemeName[kNext[theme]]}`}
+              title={say('Theme. Next: {name}', { name: say(kThemeName[kNext[theme]]) })}
               onClick={() => setTheme(kNext[theme])}
             >
               <span aria-hidden="true">{kThemeSign[theme]}</span>
-              <span className="hidden-visually">Theme: </span>
-              <span className={styles.themeName}>{kThemeName[theme]}</span>
+              <span className="hidden-visually">{say('Theme:')} </span>
+              <span className={styles.themeName}>{say(kThemeName[theme])}</span>
             </Button>
           </div>
         </div>
@@ -48,7 +50,10 @@ export function Shell({ account, home, children }: Props) {
       <main id="content" tabIndex={-1} className={styles.main}>
         {children}
       </main>
-      <footer className={styles.footer}>Times are in {timeZone()}.</footer>
+      <footer className={styles.footer}>
+        <span>{say('Times are in {zone}.', { zone: timeZone() })}</span>
+        <LanguageSwitch />
+      </footer>
     </>
   );
 }

@@ -1,5 +1,6 @@
 import type { ReactNode } from 'react';
 import { Link } from 'wouter';
+import { say } from '@/language';
 import styles from './tabbed-page.module.css';
 import { useTitle } from './title';
 
@@ -30,7 +31,7 @@ export function TabbedPage({
   readonly onPaper?: 'all' | 'content';
   readonly children: ReactNode;
 }) {
-  const here = tabs.find(({ to }) => to === at)?.name ?? '';
+  const here = say(tabs.find(({ to }) => to === at)?.name ?? '');
   useTitle(here);
   return (
     <div className={styles.page} data-on-paper={onPaper}>
@@ -42,7 +43,7 @@ export function TabbedPage({
         <nav aria-label={label} className={styles.tabs}>
           {tabs.map(({ to, name, tab }) => (
             <Link key={to} href={to} aria-current={to === at ? 'page' : undefined}>
-              {tab ?? name}
+              {say(tab ?? name)}
             </Link>
           ))}
         </nav>

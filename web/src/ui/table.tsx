@@ -1,4 +1,5 @@
 import { Fragment, type ReactNode } from 'react';
+import { say } from '@/language';
 import { Scroll } from './scroll';
 import { Skeleton } from './skeleton';
 import styles from './table.module.css';
@@ -53,7 +54,7 @@ export function Table<Row>({
           <tr>
             {columns.map(({ name, number, sorted }, i) => (
               <th key={i} scope="col" className={number ? styles.number : undefined} aria-sort={sorted}>
-                {name}
+                {typeof name === 'string' ? say(name) : name}
               </th>
             ))}
           </tr>

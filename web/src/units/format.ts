@@ -1,4 +1,5 @@
 /** The only place where a number becomes text. SI in; millimetres, degrees and per cent out. */
+import { say } from '@/language';
 import {
   kAngle,
   kForce,
@@ -16,8 +17,8 @@ import {
   type Share,
   type UtcMicroseconds,
 } from './quantity';
+import { dateWriter, kNarrowSpace, written } from './written';
 
-const kNarrowSpace = '\u202f'; // no line break between a number and its unit
 const kMinus = '−';
 export const kNone = '–';
 
@@ -28,23 +29,17 @@ export function digits(si: number, quantity: Quantity, decimals = quantity.decim
   const least = 10 ** -decimals;
   if (shown !== 0 && Math.abs(shown) < least / 2) {
     return shown > 0
-      ? `<${kNarrowSpace}${least.toFixed(decimals)}`
-      : `>${kNarrowSpace}${kMinus}${least.toFixed(decimals)}`;
+      ? `<${kNarrowSpace}${written(least.toFixed(decimals))}`
+      : `>${kNarrowSpace}${kMinus}${written(least.toFixed(decimals))}`;
   }
-  return grouped(Math.abs(shown).toFixed(decimals), shown < 0 ? kMinus : '');
+  return (shown < 0 ? kMinus : '') + written(Math.abs(shown).toFixed(decimals));
 }
 
 /** Digits rounded as they come: for a reading that moves, where a bound would only flicker. */
 export function rounded(si: number, quantity: Quantity): string {
   if (!Number.isFinite(si)) return kNone;
   const text = Math.abs(si * quantity.perSi).toFixed(quantity.decimals);
-  return grouped(text, si < 0 && Number(text) !== 0 ? kMinus : '');
-}
-
-function grouped(text: string, sign: string): string {
-  const [whole = '', fraction] = text.split('.');
-  const spaced = whole.length > 4 ? whole.replace(/\B(?=(\d{3})+$)/g, kNarrowSpace) : whole;
-  return sign + spaced + (fraction === undefined ? '' : `.${fraction}`);
+  return (si < 0 && Number(text) !== 0 ? kMinus : '') + written(text);
 }
 
 /** "1.23 N": digits and unit. The degree sign stands without a space. */
@@ -75,7 +70,7 @@ export function formatDuration(value: Second): string {
 }
 
 export function formatCount(value: number): string {
-  return Number.isFinite(value) ? grouped(Math.abs(Math.round(value)).toFixed(0), value < 0 ? kMinus : '') : kNone;
+  return Number.isFinite(value) ? (value < 0 ? kMinus : '') + written(Math.abs(Math.round(value)).toFixed(0)) : kNone;
 }
 
 /** "4 of 12 steps" needs a share that is honest near 0 and 1: never "0 %" for some, never "100 %" for not all. */
@@ -83,21 +78,21 @@ export function formatShare(value: Share, decimals = 0): string {
   if (!Number.isFinite(value)) return kNone;
   const percent = value * 100;
   const least = 10 ** -decimals;
-  if (percent > 0 && percent < least / 2) return `<${kNarrowSpace}${least.toFixed(decimals)}${kNarrowSpace}%`;
+  if (percent > 0 && percent < least / 2) return `<${kNarrowSpace}${written(least.toFixed(decimals))}${kNarrowSpace}%`;
   if (percent < 100 && percent > 100 - least / 2)
-    return `>${kNarrowSpace}${(100 - least).toFixed(decimals)}${kNarrowSpace}%`;
-  return `${percent.toFixed(decimals)}${kNarrowSpace}%`;
+    return `>${kNarrowSpace}${written((100 - least).toFixed(decimals))}${kNarrowSpace}%`;
+  return `${written(percent.toFixed(decimals))}${kNarrowSpace}%`;
 }
 
 export function formatRate(hertz: number): string {
   if (!Number.isFinite(hertz)) return kNone;
   return hertz >= 1000
-    ? `${Number((hertz / 1000).toFixed(3))}${kNarrowSpace}kHz`
-    : `${Number(hertz.toFixed(1))}${kNarrowSpace}Hz`;
+    ? `${written(String(Number((hertz / 1000).toFixed(3))))}${kNarrowSpace}kHz`
+    : `${written(String(Number(hertz.toFixed(1))))}${kNarrowSpace}Hz`;
 }
 
-const kDateTime = new Intl.DateTimeFormat('en-GB', { dateStyle: 'medium', timeStyle: 'short' });
-const kSeconds = new Intl.DateTimeFormat('en-GB', { dateStyle: 'full', timeStyle: 'long' });
+const writeDateTime = dateWriter({ dateStyle: 'medium', timeStyle: 'short' });
+const writeSeconds = dateWriter({ dateStyle: 'full', timeStyle: 'long' });
 
 const kBytes = ['B', 'kB', 'MB', 'GB', 'TB'] as const;
 
@@ -106,15 +101,16 @@ export function formatBytes(bytes: number): string {
   if (!Number.isFinite(bytes)) return kNone;
   const step = bytes < 1000 ? 0 : Math.min(Math.floor(Math.log10(bytes) / 3), kBytes.length - 1);
   const shown = bytes / 1000 ** step;
-  return `${shown.toFixed(step === 0 || shown >= 100 ? 0 : shown >= 10 ? 1 : 2)}${kNarrowSpace}${kBytes[step] ?? 'B'}`;
+  const text = shown.toFixed(step === 0 || shown >= 100 ? 0 : shown >= 10 ? 1 : 2);
+  return `${written(text)}${kNarrowSpace}${kBytes[step] ?? 'B'}`;
 }
 
 /** In the reader's own time zone: "21 Nov 2025, 05:35". */
-export const formatDateTime = (value: UtcMicroseconds) => kDateTime.format(new Date(value / 1000));
-const kDate = new Intl.DateTimeFormat('en-GB', { dateStyle: 'medium' });
+export const formatDateTime = (value: UtcMicroseconds) => writeDateTime(value);
+const writeDate = dateWriter({ dateStyle: 'medium' });
 /** "21 Nov 2025". */
-export const formatDate = (value: UtcMicroseconds) => kDate.format(new Date(value / 1000));
-export const formatDateTimeLong = (value: UtcMicroseconds) => kSeconds.format(new Date(value / 1000));
+export const formatDate = (value: UtcMicroseconds) => writeDate(value);
+export const formatDateTimeLong = (value: UtcMicroseconds) => writeSeconds(value);
 /** The reader's own time zone, in which times are shown: "Europe/Berlin, UTC+2". */
 export function timeZone(now = new Date()): string {
   const name = Intl.DateTimeFormat().resolvedOptions().timeZone;
@@ -126,7 +122,7 @@ export function timeZone(now = new Date()): string {
 }
 export const isoDateTime = (value: UtcMicroseconds) => new Date(value / 1000).toISOString();
 
-const kClock = new Intl.DateTimeFormat('en-GB', {
+const writeClock = dateWriter({
   day: '2-digit',
   month: 'short',
   hour: '2-digit',
@@ -134,12 +130,13 @@ const kClock = new Intl.DateTimeFormat('en-GB', {
   second: '2-digit',
 });
 /** "21 Nov, 05:35:07": for a list of what happened. */
-export const formatClock = (value: UtcMicroseconds) => kClock.format(new Date(value / 1000));
+export const formatClock = (value: UtcMicroseconds) => writeClock(value);
 
 /** "6 years", "0.33 years", "1 year". */
 export function formatYears(value: number): string {
   if (!Number.isFinite(value)) return kNone;
-  return `${Number(value.toFixed(2))}${kNarrowSpace}${value === 1 ? 'year' : 'years'}`;
+  const count = written(String(Number(value.toFixed(2))));
+  return say('{count}\u202f{years, plural, one {year} other {years}}', { count, years: value });
 }
 
 /** A number of the server's with the unit that it names itself, as metrics have: converted to what is read at a table. */
@@ -158,6 +155,9 @@ export function measureDigits(value: number | null, unit: string): string {
   return known ? digits(value, known) : plain(value);
 }
 
+/** A measure as a number in the unit that `formatMeasure` shows, for a place on an axis. */
+export const shownValue = (value: number, unit: string): number => value * (kMeasures[unit]?.perSi ?? 1);
+
 /** Writes shares as percentages, a judged answer as a word, other values with their unit. */
 export function formatScore({
   value,
@@ -169,7 +169,7 @@ export function formatScore({
   readonly shown_as: 'number' | 'share' | 'correct_or_incorrect';
 }): string {
   if (value === null) return kNone;
-  if (shown_as === 'correct_or_incorrect') return value === 1 ? 'correct' : 'incorrect';
+  if (shown_as === 'correct_or_incorrect') return value === 1 ? say('correct') : say('incorrect');
   if (shown_as === 'share') return formatShare(share(value), value > 0 && value < 0.01 ? 3 : 0);
   return formatMeasure(value, unit);
 }

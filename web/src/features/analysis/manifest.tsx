@@ -1,5 +1,6 @@
 /** Pages of analyses and their locked plans. */
 import { lazy } from 'react';
+import { marked } from '@/language';
 import type { Feature } from '@/ui';
 
 const index = () => import('./index');
@@ -10,7 +11,7 @@ const PlanPage = lazy(() => index().then(({ PlanPage: page }) => ({ default: pag
 const RunPage = lazy(() => index().then(({ RunPage: page }) => ({ default: page })));
 
 export const feature: Feature = {
-  menu: [{ to: '/analysis', name: 'Analysis', roles: ['admin', 'director', 'researcher'], order: 90 }],
+  menu: [{ to: '/analysis', name: marked('Analysis'), roles: ['admin', 'director', 'researcher'], order: 90 }],
   pages: [
     { path: '/analysis', show: () => <AnalysisPage /> },
     { path: '/analysis/example', show: () => <ExamplePage /> },

@@ -13,6 +13,7 @@ import {
   type Assignment,
   type Release,
 } from '@/api';
+import { say } from '@/language';
 import { AskDialog, Button, Card, DataTable, Facts, Field, Notice, ReasonDialog, Skeleton, useTitle } from '@/ui';
 import { formatDateTime, timeZone } from '@/units';
 import styles from './assignments.module.css';
@@ -40,7 +41,7 @@ function Results({ one, store }: { readonly one: Assignment; readonly store: Sto
     set.mutate(to);
   };
   return (
-    <Card title="Results">
+    <Card title={say('Results')}>
       <div className={styles.stack} data-part="results">
         <p>
           <strong>{kReleaseLabels[one.release].name}</strong>. {kReleaseLabels[one.release].description}
@@ -48,21 +49,21 @@ function Results({ one, store }: { readonly one: Assignment; readonly store: Sto
         <div className={styles.buttons}>
           {one.release === 'released' ? (
             <Button onClick={() => go('held', 'released')} disabled={set.isPending}>
-              Hide results
+              {say('Hide results')}
             </Button>
           ) : (
             <Button look="solid" onClick={() => go('released', one.release)} disabled={set.isPending}>
-              Release results
+              {say('Release results')}
             </Button>
           )}
           {before !== null && !set.isPending && set.isSuccess ? (
             <Button look="quiet" onClick={() => go(before, null)}>
-              Undo
+              {say('Undo')}
             </Button>
           ) : null}
         </div>
         {set.isError ? (
-          <Notice tone="bad" title="The action failed.">
+          <Notice tone="bad" title={say('The action failed.')}>
             {set.error.message}
           </Notice>
         ) : null}
@@ -85,15 +86,17 @@ function DueDialog({
   const wrong = dueProblem(text, now_us);
   return (
     <AskDialog
-      title="Change due date"
-      action="Save"
+      title={say('Change due date')}
+      action={say('Save')}
       ready={wrong === ''}
       onClose={onClose}
       onAction={() => setDue(one.id, fromField(text)).then(store)}
     >
-      <p>Stations offer the assignment with the earliest due date first. Leave the field empty for no due date.</p>
+      <p>
+        {say('Stations offer the assignment with the earliest due date first. Leave the field empty for no due date.')}
+      </p>
       <Field
-        label={`Due (${timeZone()})`}
+        label={say('Due ({zone})', { zone: timeZone() })}
         type="datetime-local"
         value={text}
         error={text === toField(one.due_utc_us) ? '' : wrong}
@@ -120,36 +123,40 @@ function Trainees({ one, store, may }: { readonly one: Assignment; readonly stor
     added.mutate(name.trim());
   };
   return (
-    <Card title="Trainees">
+    <Card title={say('Trainees')}>
       <div className={styles.stack}>
         <DataTable<Trainee>
-          caption="Trainees"
+          caption={say('Trainees')}
           rows={one.trainees}
           keyOf={({ account_id }) => account_id}
-          empty="No trainees yet."
+          empty={say('No trainees yet.')}
           columns={[
             {
-              name: 'Name',
+              name: say('Name'),
               by: (person) => person.name,
               cell: (person) => <Link href={`/trainees/${encodeURIComponent(person.participant)}`}>{person.name}</Link>,
             },
             {
-              name: 'Done',
+              name: say('Done'),
               by: (person) => person.done / person.planned,
               cell: (person) => (
-                <Done done={person.done} planned={person.planned} label={`Trials done by ${person.name}`} />
+                <Done
+                  done={person.done}
+                  planned={person.planned}
+                  label={say('Trials done by {name}', { name: person.name })}
+                />
               ),
             },
             {
-              name: <span className="hidden-visually">Actions</span>,
+              name: <span className="hidden-visually">{say('Actions')}</span>,
               cell: (person) =>
                 may && person.done < person.planned ? (
                   <Button
                     look="quiet"
-                    label={`Release reservation: ${person.name}`}
+                    label={say('Release reservation: {name}', { name: person.name })}
                     onClick={() => setReleasing(person)}
                   >
-                    Release reservation…
+                    {say('Release reservation…')}
                   </Button>
                 ) : null,
             },
@@ -158,35 +165,35 @@ function Trainees({ one, store, may }: { readonly one: Assignment; readonly stor
         {may ? (
           <form className={styles.add} onSubmit={submit}>
             <Field
-              label="Add a trainee by account name"
+              label={say('Add a trainee by account name')}
               value={name}
               maxLength={100}
               onChange={(event) => setName(event.target.value)}
             />
             <Button type="submit" disabled={name.trim() === '' || added.isPending}>
-              Add trainee
+              {say('Add trainee')}
             </Button>
           </form>
         ) : null}
         {added.isError ? (
-          <Notice tone="bad" title="The action failed.">
+          <Notice tone="bad" title={say('The action failed.')}>
             {added.error.message}
           </Notice>
         ) : null}
       </div>
       {releasing ? (
         <AskDialog
-          title={`Release the reservation for ${releasing.name}?`}
-          action="Release reservation"
+          title={say('Release the reservation for {name}?', { name: releasing.name })}
+          action={say('Release reservation')}
           onClose={() => setReleasing(null)}
           onAction={() => releaseReservation(one.id, releasing.account_id).then(store)}
         >
           <p>
-            A station reserves a trial from its start until the recording is uploaded. After the release, any station
-            can offer the trial again. If the first station uploads its recording later, the recording is kept as
-            surplus.
+            {say(
+              'A station reserves a trial from its start until the recording is uploaded. After the release, any station can offer the trial again. If the first station uploads its recording later, the recording is kept as surplus.',
+            )}
             {one.to_drill > 0
-              ? ' A channel that was drilled at that station and not yet palpated must be drilled again.'
+              ? ` ${say('A channel that was drilled at that station and not yet palpated must be drilled again.')}`
               : ''}
           </p>
         </AskDialog>
@@ -204,34 +211,39 @@ function Teaching({ one, may }: { readonly one: Assignment; readonly may: boolea
         <Trainees one={one} store={store} may={may} />
         <div className={styles.stack}>
           {may ? <Results one={one} store={store} /> : null}
-          <Card title="Settings">
+          <Card title={say('Settings')}>
             <div className={styles.stack}>
               <Facts
                 facts={[
-                  { name: 'Order', value: one.ordering ? kOrderLabels[one.ordering] : '–' },
-                  { name: 'Repeats per case', value: String(one.repeats ?? 1) },
-                  { name: 'Cohort', value: one.cohort_name || 'none' },
-                  { name: 'Created', value: `${formatDateTime(one.made_utc_us)} by ${one.made_by}` },
+                  { name: say('Order'), value: one.ordering ? say(kOrderLabels[one.ordering]) : '–' },
+                  { name: say('Repeats per case'), value: String(one.repeats ?? 1) },
+                  { name: say('Cohort'), value: one.cohort_name || say('none') },
+                  {
+                    name: say('Created'),
+                    value: say('{time} by {name}', { time: formatDateTime(one.made_utc_us), name: one.made_by }),
+                  },
                 ]}
               />
               {may ? (
                 <div className={styles.buttons}>
-                  <Button onClick={() => setDialog('due')}>Change due date…</Button>
+                  <Button onClick={() => setDialog('due')}>{say('Change due date…')}</Button>
                 </div>
               ) : null}
             </div>
           </Card>
         </div>
       </div>
-      <Card title="Trials">
+      <Card title={say('Trials')}>
         <TrialsTable one={one} may={may} onInvalid={setDialog} />
       </Card>
       {dialog === 'due' ? <DueDialog one={one} store={store} onClose={() => setDialog(null)} /> : null}
       {dialog !== null && dialog !== 'due' ? (
         <ReasonDialog
-          title="Mark this trial as invalid?"
-          text="The trial is kept with your reason, but it is not counted. It is repeated as the assignment specifies."
-          action="Mark as invalid"
+          title={say('Mark this trial as invalid?')}
+          text={say(
+            'The trial is kept with your reason, but it is not counted. It is repeated as the assignment specifies.',
+          )}
+          action={say('Mark as invalid')}
           reasonNeeded
           onAction={(reason) => markAssignedInvalid(one.id, dialog, reason).then(store)}
           onClose={() => setDialog(null)}
@@ -246,14 +258,15 @@ function Own({ one }: { readonly one: Assignment }) {
     <>
       {one.to_drill > 0 ? (
         <p>
-          In cases without a pre-drilled channel, you first drill the channel and then palpate it: two trials at the
-          same station. The case is done when both recordings are uploaded.
+          {say(
+            'In cases without a pre-drilled channel, you first drill the channel and then palpate it: two trials at the same station. The case is done when both recordings are uploaded.',
+          )}
         </p>
       ) : null}
-      <Card title="Results">
+      <Card title={say('Results')}>
         {one.release === 'held' ? (
           <p data-part="held">
-            Your results appear here after they are released. Until then, the cases stay blinded for everyone.
+            {say('Your results appear here after they are released. Until then, the cases stay blinded for everyone.')}
           </p>
         ) : (
           <TrialsTable one={one} may={false} own />
@@ -269,20 +282,20 @@ export function AssignmentPage({ id }: { readonly id: string }) {
   const role = useQuery({ ...sessionQuery, enabled: false }).data?.role;
   const [now_us] = useState(() => Date.now() * 1000);
   const one = query.data;
-  useTitle(one?.title ?? 'Assignment');
+  useTitle(one?.title ?? say('Assignment'));
   return (
     <div className={styles.page}>
       <p>
-        <Link href="/assignments">← {role === 'trainee' ? 'My work' : 'Assignments'}</Link>
+        <Link href="/assignments">← {role === 'trainee' ? say('My work') : say('Assignments')}</Link>
       </p>
       {query.isError && !one ? (
-        <Notice tone="bad" title="The assignment could not be loaded." onRetry={() => void query.refetch()}>
+        <Notice tone="bad" title={say('The assignment could not be loaded.')} onRetry={() => void query.refetch()}>
           {query.error.message}
         </Notice>
       ) : null}
       {query.isPending ? (
         <div role="status">
-          <span className="hidden-visually">Loading the assignment</span>
+          <span className="hidden-visually">{say('Loading the assignment')}</span>
           <Skeleton height="480px" />
         </div>
       ) : null}
@@ -291,7 +304,7 @@ export function AssignmentPage({ id }: { readonly id: string }) {
           <div className={styles.headline}>
             <h1>{one.title}</h1>
             <DueDate one={one} now_us={now_us} />
-            <Done done={one.done} planned={one.planned} label="Trials done in total" />
+            <Done done={one.done} planned={one.planned} label={say('Trials done in total')} />
             <Drilling one={one} />
           </div>
           {role === 'trainee' ? <Own one={one} /> : <Teaching one={one} may={role === 'admin' || role === 'faculty'} />}

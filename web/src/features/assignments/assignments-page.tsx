@@ -9,6 +9,7 @@ import {
   useSavedViews,
   type AssignmentSummary,
 } from '@/api';
+import { marked, say } from '@/language';
 import {
   Badge,
   Card,
@@ -31,7 +32,7 @@ import { kReleaseLabels } from './labels';
 type AssignmentColumn = ListColumn<AssignmentSummary> & DataColumn<AssignmentSummary>;
 
 const nameColumn: AssignmentColumn = {
-  name: 'Assignment',
+  name: marked('Assignment'),
   sort: 'title',
   by: (one) => one.title,
   cell: (one) => (
@@ -44,41 +45,45 @@ const nameColumn: AssignmentColumn = {
   ),
 };
 const dueColumn = (now_us: number): AssignmentColumn => ({
-  name: 'Due',
+  name: say('Due'),
   sort: 'due',
   by: (one) => one.due_utc_us,
   cell: (one) => <DueDate one={one} now_us={now_us} />,
 });
 const doneColumn: AssignmentColumn = {
-  name: 'Done',
+  name: marked('Done'),
   by: (one) => one.done / one.planned,
-  cell: (one) => <Done done={one.done} planned={one.planned} label={`Trials done of ${one.title}`} />,
+  cell: (one) => (
+    <Done done={one.done} planned={one.planned} label={say('Trials done of {title}', { title: one.title })} />
+  ),
 };
 const resultsColumn: AssignmentColumn = {
-  name: 'Results',
-  by: ({ release }) => kReleaseLabels[release].name,
-  cell: ({ release }) => <Badge tone={release === 'held' ? 'neutral' : 'good'}>{kReleaseLabels[release].name}</Badge>,
+  name: marked('Results'),
+  by: ({ release }) => say(kReleaseLabels[release].name),
+  cell: ({ release }) => (
+    <Badge tone={release === 'held' ? 'neutral' : 'good'}>{say(kReleaseLabels[release].name)}</Badge>
+  ),
 };
 
 const kFilters: readonly ListFilter[] = [
   {
     name: 'state',
-    label: 'State',
+    label: marked('State'),
     choices: [
-      { value: 'unfinished', text: 'unfinished' },
-      { value: 'finished', text: 'finished' },
+      { value: 'unfinished', text: marked('unfinished') },
+      { value: 'finished', text: marked('finished') },
     ],
   },
   {
     name: 'release',
-    label: 'Results',
+    label: marked('Results'),
     choices: (['held', 'released', 'at_once'] as const).map((value) => ({ value, text: kReleaseLabels[value].name })),
   },
 ];
 
 function Failed({ message, onRetry }: { readonly message: string; readonly onRetry: () => void }) {
   return (
-    <Notice tone="bad" title="The assignments could not be loaded." onRetry={onRetry}>
+    <Notice tone="bad" title={say('The assignments could not be loaded.')} onRetry={onRetry}>
       {message}
     </Notice>
   );
@@ -91,21 +96,21 @@ function OwnAssignments({ now_us }: { readonly now_us: number }) {
   const all = query.data?.assignments;
   return (
     <>
-      <Card title="To do">
+      <Card title={say('To do')}>
         <DataTable<AssignmentSummary>
-          caption="Assignments to do"
+          caption={say('Assignments to do')}
           rows={all?.filter((one) => one.done < one.planned)}
           keyOf={({ id }) => id}
-          empty="No open assignments."
+          empty={say('No open assignments.')}
           columns={[nameColumn, dueColumn(now_us), doneColumn]}
         />
       </Card>
-      <Card title="Done">
+      <Card title={say('Done')}>
         <DataTable<AssignmentSummary>
-          caption="Assignments done"
+          caption={say('Assignments done')}
           rows={all?.filter((one) => one.done >= one.planned)}
           keyOf={({ id }) => id}
-          empty="No completed assignments yet."
+          empty={say('No completed assignments yet.')}
           columns={[nameColumn, doneColumn, resultsColumn]}
         />
       </Card>
@@ -120,31 +125,31 @@ function TaughtAssignments({ now_us, may }: { readonly now_us: number; readonly 
   const views = useSavedViews('assignments');
   if (query.isError) return <Failed message={query.error.message} onRetry={() => void query.refetch()} />;
   return (
-    <Card title="Assignments">
+    <Card title={say('Assignments')}>
       <ListTable<AssignmentSummary>
-        caption="Assignments"
+        caption={say('Assignments')}
         list={list}
         page={query.data}
         views={views}
         usual="urgency"
-        searchLabel="Find by assignment, cohort or creator"
+        searchLabel={say('Find by assignment, cohort or creator')}
         filters={kFilters}
         rows={query.data?.assignments}
         keyOf={({ id }) => id}
-        empty={may ? 'No assignments yet. Create a new assignment.' : 'No assignments yet.'}
+        empty={may ? say('No assignments yet. Create a new assignment.') : say('No assignments yet.')}
         minWidth={760}
         columns={[
           nameColumn,
-          { name: 'Cohort', sort: 'cohort', cell: (one) => one.cohort_name || '–' },
-          { name: 'Trainees', cell: (one) => formatCount(one.people ?? 0), number: true },
+          { name: say('Cohort'), sort: 'cohort', cell: (one) => one.cohort_name || '–' },
+          { name: say('Trainees'), cell: (one) => formatCount(one.people ?? 0), number: true },
           dueColumn(now_us),
           doneColumn,
           resultsColumn,
           {
-            name: 'Created',
+            name: say('Created'),
             sort: 'made',
             falls: true,
-            cell: (one) => `${formatDateTime(one.made_utc_us)} by ${one.made_by}`,
+            cell: (one) => say('{time} by {name}', { time: formatDateTime(one.made_utc_us), name: one.made_by }),
           },
         ]}
       />
@@ -158,23 +163,27 @@ export function AssignmentsPage() {
   const [now_us] = useState(() => Date.now() * 1000);
   const own = role === 'trainee';
   const may = role === 'admin' || role === 'faculty';
-  useTitle(own ? 'My work' : 'Assignments');
+  useTitle(own ? say('My work') : say('Assignments'));
   return (
     <div className={styles.page}>
       <div className={styles.top}>
         <div>
-          <h1>{own ? 'My work' : 'Assignments'}</h1>
+          <h1>{own ? say('My work') : say('Assignments')}</h1>
           <p className={styles.lead}>
             {own
-              ? 'Your assignments, their due dates and their results. Sign in at a station with your badge and PIN; the station then offers your next trial.'
-              : 'Cases assigned to trainees, their due dates, and who may see the results. After badge and PIN, a station offers the next case under a blind name.'}
+              ? say(
+                  'Your assignments, their due dates and their results. Sign in at a station with your badge and PIN; the station then offers your next trial.',
+                )
+              : say(
+                  'Cases assigned to trainees, their due dates, and who may see the results. After badge and PIN, a station offers the next case under a blind name.',
+                )}
           </p>
         </div>
         {may ? (
           <span className={styles.buttons}>
-            <Link href="/curricula">Curricula</Link>
+            <Link href="/curricula">{say('Curricula')}</Link>
             <Link href="/assignments/new" className={styles.solid}>
-              New assignment
+              {say('New assignment')}
             </Link>
           </span>
         ) : null}

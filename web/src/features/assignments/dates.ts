@@ -1,4 +1,5 @@
 /** Dates as a person types them: in the time zone of who reads. */
+import { say } from '@/language';
 const two = (value: number) => String(value).padStart(2, '0');
 
 /** "2026-03-01T12:00", for a field of date and time. */
@@ -11,8 +12,8 @@ export function toField(utc_us: number | null): string {
 /** Why a due date cannot be set; empty if it can, as it can be left out. */
 export function dueProblem(text: string, now_us: number): string {
   const due = fromField(text);
-  if (text !== '' && due === null) return 'Enter a date and a time.';
-  return due !== null && due < now_us ? 'The due date is in the past.' : '';
+  if (text !== '' && due === null) return say('Enter a date and a time.');
+  return due !== null && due < now_us ? say('The due date is in the past.') : '';
 }
 
 /** null for an empty field or no date. */

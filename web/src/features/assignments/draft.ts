@@ -1,5 +1,6 @@
 /** A new assignment as it is being written. */
 import type { NewAssignment } from '@/api';
+import { say } from '@/language';
 import { dueProblem, fromField } from './dates';
 
 export interface Item {
@@ -45,7 +46,7 @@ export function letters(index: number): string {
 /** The next unused blind name. */
 export function nextBlind(chosen: readonly Chosen[]): string {
   for (let i = 0; ; ++i) {
-    const name = `Case ${letters(i)}`;
+    const name = say('Case {letters}', { letters: letters(i) });
     if (!chosen.some(({ blind }) => blind === name)) return name;
   }
 }
@@ -62,13 +63,13 @@ export function toggled(draft: Draft, item: Item): Draft {
 
 /** The first thing that is missing or wrong; empty: the assignment can be created. */
 export function firstProblem(draft: Draft, now_us: number): string {
-  if (draft.title.trim() === '') return 'Enter a title.';
-  if (draft.chosen.length === 0) return 'Choose at least one case.';
-  if (draft.cohort === '' && draft.people.length === 0) return 'Choose a cohort or trainees.';
+  if (draft.title.trim() === '') return say('Enter a title.');
+  if (draft.chosen.length === 0) return say('Choose at least one case.');
+  if (draft.cohort === '' && draft.people.length === 0) return say('Choose a cohort or trainees.');
   const names = draft.chosen.map(({ blind }) => blind.trim()).filter((name) => name !== '');
   const wrongDue = dueProblem(draft.due, now_us);
   if (wrongDue !== '') return wrongDue;
-  if (new Set(names).size !== names.length) return 'Two cases have the same blind name.';
+  if (new Set(names).size !== names.length) return say('Two cases have the same blind name.');
   return '';
 }
 

@@ -1,5 +1,6 @@
 import { useMutation, useQuery, useQueryClient } from '@tanstack/react-query';
 import { acceptInvitation, declineInvitation, invitationsQuery, kAssignmentLists, type Invitation } from '@/api';
+import { say } from '@/language';
 import { Button, Card, Notice, Table } from '@/ui';
 import { formatDateTime } from '@/units';
 import styles from './assignments.module.css';
@@ -20,44 +21,45 @@ export function Invitations() {
   const list = query.data?.invitations ?? [];
   if (list.length === 0) return null;
   return (
-    <Card title="Invitations">
+    <Card title={say('Invitations')}>
       <div className={styles.stack}>
         <p>
-          Faculty who lead a cohort see the trials of all its members and set their badges and PINs. You join only if
-          you accept.
+          {say(
+            'Faculty who lead a cohort see the trials of all its members and set their badges and PINs. You join only if you accept.',
+          )}
         </p>
         {answered.isError ? (
-          <Notice tone="bad" title="The action failed.">
+          <Notice tone="bad" title={say('The action failed.')}>
             {answered.error.message}
           </Notice>
         ) : null}
         <Table<Invitation>
-          caption="Cohort invitations"
+          caption={say('Cohort invitations')}
           rows={list}
           keyOf={({ cohort_id }) => cohort_id}
           empty=""
           columns={[
-            { name: 'Cohort', cell: (one) => one.cohort_name },
-            { name: 'From', cell: (one) => one.made_by },
-            { name: 'Sent', cell: (one) => formatDateTime(one.made_utc_us) },
+            { name: say('Cohort'), cell: (one) => one.cohort_name },
+            { name: say('From'), cell: (one) => one.made_by },
+            { name: say('Sent'), cell: (one) => formatDateTime(one.made_utc_us) },
             {
-              name: <span className="hidden-visually">Answer</span>,
+              name: <span className="hidden-visually">{say('Answer')}</span>,
               cell: (one) => (
                 <span className={styles.buttons}>
                   <Button
-                    label={`Accept: ${one.cohort_name}`}
+                    label={say('Accept: {cohort_name}', { cohort_name: one.cohort_name })}
                     disabled={answered.isPending}
                     onClick={() => decide(one, true)}
                   >
-                    Accept
+                    {say('Accept')}
                   </Button>
                   <Button
                     look="quiet"
-                    label={`Decline: ${one.cohort_name}`}
+                    label={say('Decline: {cohort_name}', { cohort_name: one.cohort_name })}
                     disabled={answered.isPending}
                     onClick={() => decide(one, false)}
                   >
-                    Decline
+                    {say('Decline')}
                   </Button>
                 </span>
               ),

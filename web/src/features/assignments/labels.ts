@@ -1,23 +1,37 @@
 import type { AssignmentSummary, Release } from '@/api';
+import { marked, say } from '@/language';
 
 export const kReleaseLabels: Record<Release, { readonly name: string; readonly description: string }> = {
-  held: { name: 'not released', description: 'Trainees see no results until you release them.' },
-  released: { name: 'released', description: 'Trainees see their results and comments.' },
-  at_once: { name: 'released immediately', description: 'Trainees see each result as soon as it is available.' },
+  held: { name: marked('not released'), description: marked('Trainees see no results until you release them.') },
+  released: { name: marked('released'), description: marked('Trainees see their results and comments.') },
+  at_once: {
+    name: marked('released immediately'),
+    description: marked('Trainees see each result as soon as it is available.'),
+  },
 };
 
 export const kOrderLabels = {
-  fixed: 'Same order for every trainee, as listed',
-  random: 'Random order per trainee',
-  balanced: 'Orders balanced across trainees',
+  fixed: marked('Same order for every trainee, as listed'),
+  random: marked('Random order per trainee'),
+  balanced: marked('Orders balanced across trainees'),
 } as const;
 
-export const kDrillThenPalpate = 'drill, then palpate';
+export const kOrderWords: Readonly<Record<string, string>> = {
+  fixed: marked('fixed'),
+  random: marked('random'),
+  balanced: marked('balanced'),
+};
+
+export const kRigWords = { palpation: marked('palpation'), probing: marked('probing') } as const;
+
+export const kDrillThenPalpate = marked('drill, then palpate');
 
 /** How many trials begin with the burr; empty: none does. */
 export function drillingLabel({ to_drill, planned }: Pick<AssignmentSummary, 'to_drill' | 'planned'>): string {
   if (to_drill === 0) return '';
-  return to_drill === planned ? kDrillThenPalpate : `${to_drill} of ${planned}: ${kDrillThenPalpate}`;
+  return to_drill === planned
+    ? say(kDrillThenPalpate)
+    : say('{to_drill} of {planned}: drill, then palpate', { to_drill, planned });
 }
 
 export type Due = 'none' | 'late' | 'soon' | 'later';

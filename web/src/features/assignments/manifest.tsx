@@ -1,5 +1,6 @@
 /** Pages of assignments: what trainees are to do. */
 import { lazy } from 'react';
+import { marked } from '@/language';
 import type { Feature } from '@/ui';
 
 const index = () => import('./index');
@@ -9,8 +10,8 @@ const NewAssignmentPage = lazy(() => index().then(({ NewAssignmentPage: page }) 
 
 export const feature: Feature = {
   menu: [
-    { to: '/assignments', name: 'My work', roles: ['trainee'], order: 10 },
-    { to: '/assignments', name: 'Assignments', roles: ['admin', 'director', 'faculty'], order: 50 },
+    { to: '/assignments', name: marked('My work'), roles: ['trainee'], order: 10 },
+    { to: '/assignments', name: marked('Assignments'), roles: ['admin', 'director', 'faculty'], order: 50 },
   ],
   pages: [
     { path: '/assignments', show: () => <AssignmentsPage /> },

@@ -10,11 +10,12 @@ import {
   kFeltSigns,
   scenariosQuery,
 } from '@/api';
+import { say, Sentence } from '@/language';
 import { Badge, Button, Card, Field, Notice, Select, Skeleton, useTitle } from '@/ui';
 import { formatCount, timeZone } from '@/units';
 import styles from './assignments.module.css';
 import { kNoDraft, firstProblem, toggled, trialsEach, requestOf, type Draft, type Item } from './draft';
-import { kOrderLabels, kReleaseLabels, kDrillThenPalpate } from './labels';
+import { kDrillThenPalpate, kOrderLabels, kOrderWords, kReleaseLabels, kRigWords } from './labels';
 
 type Change = (change: Partial<Draft>) => void;
 
@@ -37,14 +38,14 @@ function useItems(): { items: Item[] | undefined; failed: Error | null; retry: (
         rig: 'palpation' as const,
         case_id: id,
         whole: planned,
-        ...(planned || felt === 'told' ? {} : { sign: kFeltSigns[felt].text }),
+        ...(planned || felt === 'told' ? {} : { sign: say(kFeltSigns[felt].text) }),
       })),
     ...scenarios.data.scenarios
       .filter(({ published }) => published)
       .map(({ id, name }) => ({ key: `scenario ${id}`, title: name, rig: 'probing' as const, case_id: id })),
     ...scenarios.data.tuned.map(({ kind, name }) => ({
       key: `tuned ${kind}`,
-      title: `${name} (built-in)`,
+      title: say('{name} (built-in)', { name }),
       rig: 'probing' as const,
       tuned: kind,
     })),
@@ -63,7 +64,7 @@ function CasesField({
 }) {
   return (
     <fieldset className={styles.choices}>
-      <legend className="hidden-visually">Cases</legend>
+      <legend className="hidden-visually">{say('Cases')}</legend>
       {items.map((item) => {
         const chosen = draft.chosen.find(({ key }) => key === item.key);
         return (
@@ -72,12 +73,12 @@ function CasesField({
               <input type="checkbox" checked={chosen !== undefined} onChange={() => onDraft(toggled(draft, item))} />{' '}
               <span>{item.title}</span>
             </label>
-            <Badge>{item.whole ? kDrillThenPalpate : item.rig}</Badge>
+            <Badge>{item.whole ? say(kDrillThenPalpate) : say(kRigWords[item.rig])}</Badge>
             {item.sign === undefined ? null : <Badge tone="warn">{item.sign}</Badge>}
             <input
               className={styles.blind}
-              aria-label={`Blind name of ${item.title}`}
-              placeholder="blind name"
+              aria-label={say('Blind name of {title}', { title: item.title })}
+              placeholder={say('blind name')}
               maxLength={128}
               value={chosen?.blind ?? ''}
               disabled={!chosen}
@@ -104,7 +105,7 @@ function People({ draft, change }: { readonly draft: Draft; readonly change: Cha
   const members = useQuery({ ...cohortQuery(source), enabled: source !== '' });
   if (cohorts.isError)
     return (
-      <Notice tone="bad" title="The cohorts could not be loaded." onRetry={() => void cohorts.refetch()}>
+      <Notice tone="bad" title={say('The cohorts could not be loaded.')} onRetry={() => void cohorts.refetch()}>
         {cohorts.error.message}
       </Notice>
     );
@@ -112,33 +113,36 @@ function People({ draft, change }: { readonly draft: Draft; readonly change: Cha
   if (cohorts.data.cohorts.length === 0)
     return (
       <p>
-        No cohorts yet. <Link href="/network/cohorts">Create a cohort</Link> and add trainees first.
+        <Sentence
+          text="No cohorts yet. <link>Create a cohort</link> and add trainees first."
+          parts={{ link: (words) => <Link href="/network/cohorts">{words}</Link> }}
+        />
       </p>
     );
   const options = cohorts.data.cohorts.map(({ id, name, trainees }) => ({
     value: id,
-    text: `${name}, ${formatCount(trainees)} ${trainees === 1 ? 'trainee' : 'trainees'}`,
+    text: say('{name}, {trainees, plural, one {# trainee} other {# trainees}}', { name, trainees }),
   }));
   const trainees = members.data?.people.filter(({ part, state }) => part === 'trainee' && state === 'active') ?? [];
   return (
     <div className={styles.stack}>
       <Select
-        label="Cohort (includes later members)"
+        label={say('Cohort (includes later members)')}
         value={draft.cohort}
-        options={[{ value: '', text: 'none' }, ...options]}
+        options={[{ value: '', text: say('none') }, ...options]}
         onChange={(event) => change({ cohort: event.target.value })}
       />
       <Select
-        label="Individual trainees from"
+        label={say('Individual trainees from')}
         value={source}
         options={options}
         onChange={(event) => setFrom(event.target.value)}
       />
       <fieldset className={styles.people}>
-        <legend className="hidden-visually">People</legend>
+        <legend className="hidden-visually">{say('People')}</legend>
         {members.isPending ? <Skeleton height="28px" /> : null}
         {members.data && trainees.length === 0 ? (
-          <p className={styles.muted}>This cohort has no trainees yet.</p>
+          <p className={styles.muted}>{say('This cohort has no trainees yet.')}</p>
         ) : null}
         {trainees.map(({ name }) => (
           <label key={name} className={styles.person}>
@@ -164,7 +168,7 @@ function People({ draft, change }: { readonly draft: Draft; readonly change: Cha
 
 /** Cases, trainees, order, due date and release of a new assignment. */
 export function NewAssignmentPage() {
-  useTitle('New assignment');
+  useTitle(say('New assignment'));
   const client = useQueryClient();
   const [, go] = useLocation();
   const wanted = new URLSearchParams(useSearch()).get('case');
@@ -189,21 +193,26 @@ export function NewAssignmentPage() {
   return (
     <form className={styles.page} onSubmit={submit}>
       <p>
-        <Link href="/assignments">← Assignments</Link>
+        <Link href="/assignments">{`← ${say('Assignments')}`}</Link>
       </p>
-      <h1>New assignment</h1>
+      <h1>{say('New assignment')}</h1>
       {failed ? (
-        <Notice tone="bad" title="The cases could not be loaded." onRetry={retry}>
+        <Notice tone="bad" title={say('The cases could not be loaded.')} onRetry={retry}>
           {failed.message}
         </Notice>
       ) : null}
       <div className={styles.two}>
-        <Card title="Cases" aside={<span className={styles.muted}>{formatCount(draft.chosen.length)} chosen</span>}>
+        <Card
+          title={say('Cases')}
+          aside={
+            <span className={styles.muted}>{say('{count} chosen', { count: formatCount(draft.chosen.length) })}</span>
+          }
+        >
           <div className={styles.stack}>
-            <p className={styles.muted}>Trainees see only the blind name, never the title of the case.</p>
+            <p className={styles.muted}>{say('Trainees see only the blind name, never the title of the case.')}</p>
             {items ? (
               items.length === 0 ? (
-                <p>No cases yet.</p>
+                <p>{say('No cases yet.')}</p>
               ) : (
                 <CasesField draft={draft} items={items} onDraft={setDraft} />
               )
@@ -212,24 +221,24 @@ export function NewAssignmentPage() {
             )}
           </div>
         </Card>
-        <Card title="Trainees">
+        <Card title={say('Trainees')}>
           <People draft={draft} change={change} />
         </Card>
       </div>
-      <Card title="Settings">
+      <Card title={say('Settings')}>
         <div className={styles.form}>
           <Field
-            label="Title, shown to trainees"
+            label={say('Title, shown to trainees')}
             value={draft.title}
             required
             maxLength={200}
-            placeholder="Week 12, palpation"
+            placeholder={say('Week 12, palpation')}
             onChange={(event) => change({ title: event.target.value })}
           />
           <Select
-            label="Order"
+            label={say('Order')}
             value={draft.ordering}
-            options={Object.keys(kOrderLabels).map((value) => ({ value, text: value }))}
+            options={Object.keys(kOrderLabels).map((value) => ({ value, text: say(kOrderWords[value] ?? value) }))}
             aria-describedby="order-means"
             onChange={(event) => {
               const to = event.target.value;
@@ -237,7 +246,7 @@ export function NewAssignmentPage() {
             }}
           />
           <Field
-            label="Repeats per case"
+            label={say('Repeats per case')}
             type="number"
             min={1}
             max={20}
@@ -248,15 +257,15 @@ export function NewAssignmentPage() {
             }}
           />
           <Field
-            label={`Due (optional, ${timeZone()})`}
+            label={say('Due (optional, {zone})', { zone: timeZone() })}
             type="datetime-local"
             value={draft.due}
             onChange={(event) => change({ due: event.target.value })}
           />
           <Select
-            label="Results"
+            label={say('Results')}
             value={draft.release}
-            options={Object.entries(kReleaseLabels).map(([value, { name }]) => ({ value, text: name }))}
+            options={Object.entries(kReleaseLabels).map(([value, { name }]) => ({ value, text: say(name) }))}
             aria-describedby="release-means"
             onChange={(event) => {
               const to = event.target.value;
@@ -264,25 +273,25 @@ export function NewAssignmentPage() {
             }}
           />
           <p id="order-means" className={`${styles.wide} ${styles.muted}`}>
-            {kOrderLabels[draft.ordering]}.
+            {say(kOrderLabels[draft.ordering])}.
           </p>
           <p id="release-means" className={`${styles.wide} ${styles.muted}`}>
-            {kReleaseLabels[draft.release].description}
+            {say(kReleaseLabels[draft.release].description)}
           </p>
         </div>
       </Card>
       {made.isError ? (
-        <Notice tone="bad" title="The assignment was not created.">
+        <Notice tone="bad" title={say('The assignment was not created.')}>
           {made.error.message}
         </Notice>
       ) : null}
       <div className={styles.go}>
         <span role="status" className={styles.muted}>
           {missing ||
-            `${formatCount(trialsEach(draft))} ${trialsEach(draft) === 1 ? 'trial' : 'trials'} for each trainee.`}
+            say('{trials, plural, one {# trial} other {# trials}} for each trainee.', { trials: trialsEach(draft) })}
         </span>
         <Button look="solid" type="submit" disabled={missing !== '' || made.isPending}>
-          {made.isPending ? 'Assigning…' : 'Assign'}
+          {made.isPending ? say('Assigning…') : say('Assign')}
         </Button>
       </div>
     </form>

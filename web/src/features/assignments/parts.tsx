@@ -1,16 +1,21 @@
 import type { AssignmentSummary } from '@/api';
+import { say } from '@/language';
 import { Badge, Progress } from '@/ui';
 import { formatCount, formatDateTime } from '@/units';
 import styles from './assignments.module.css';
 import { drillingLabel, dueState } from './labels';
 
 export function DueDate({ one, now_us }: { readonly one: AssignmentSummary; readonly now_us: number }) {
-  if (one.due_utc_us === null) return <span className={styles.muted}>no due date</span>;
+  if (one.due_utc_us === null) return <span className={styles.muted}>{say('no due date')}</span>;
   const how = dueState(one, now_us);
   return (
     <span className={styles.due}>
       {formatDateTime(one.due_utc_us)}
-      {how === 'late' ? <Badge tone="bad">overdue</Badge> : how === 'soon' ? <Badge tone="warn">due soon</Badge> : null}
+      {how === 'late' ? (
+        <Badge tone="bad">{say('overdue')}</Badge>
+      ) : how === 'soon' ? (
+        <Badge tone="warn">{say('due soon')}</Badge>
+      ) : null}
     </span>
   );
 }
@@ -32,9 +37,7 @@ export function Done({
   return (
     <span className={styles.done}>
       <Progress done={done} of={planned} label={label} />
-      <span>
-        {formatCount(done)} of {formatCount(planned)}
-      </span>
+      <span>{say('{done} of {planned}', { done: formatCount(done), planned: formatCount(planned) })}</span>
     </span>
   );
 }

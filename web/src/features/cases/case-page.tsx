@@ -3,17 +3,18 @@ import { useState } from 'react';
 import { Link } from 'wouter';
 import { ApiError, caseQuery, casesQuery, caseTruthQuery, previewQuery, type CaseTruth } from '@/api';
 import { PlanView } from '@/charts';
-import { Button, Card, Facts, Notice, Skeleton, usePalette, useTitle } from '@/ui';
+import { say } from '@/language';
+import { Button, Card, Facts, Notice, Skeleton, usePalette, useTitle, wallName } from '@/ui';
 import { formatDateTime, formatLength, metre } from '@/units';
 import styles from './cases.module.css';
 import { CaseCertificate, FeltSign } from './certificate';
 
 function truthFacts(truth: CaseTruth): { name: string; value: string }[] {
-  if (truth.breached === null) return [{ name: 'Breach', value: 'none' }];
+  if (truth.breached === null) return [{ name: say('Breach'), value: say('none') }];
   return [
-    { name: 'Breach', value: truth.breached },
-    { name: 'Wall thickness', value: formatLength(metre(truth.wall_thickness_m)) },
-    { name: 'Depth beyond the bone', value: formatLength(metre(truth.breach_depth_m)) },
+    { name: say('Breach'), value: wallName(truth.breached) },
+    { name: say('Wall thickness'), value: formatLength(metre(truth.wall_thickness_m)) },
+    { name: say('Depth beyond the bone'), value: formatLength(metre(truth.breach_depth_m)) },
   ];
 }
 
@@ -23,14 +24,14 @@ function Truth({ id }: { readonly id: string }) {
   const query = useQuery({ ...caseTruthQuery(id), enabled: shown });
   const refused = query.error instanceof ApiError && query.error.code === 'forbidden';
   return (
-    <Card title="Truth">
+    <Card title={say('Truth')}>
       <div className={styles.truth}>
-        {!shown ? <Button onClick={() => setShown(true)}>Show the breached wall</Button> : null}
+        {!shown ? <Button onClick={() => setShown(true)}>{say('Show the breached wall')}</Button> : null}
         {shown && query.data ? (
           <>
             <Facts facts={truthFacts(query.data)} />
             <Button look="quiet" onClick={() => setShown(false)}>
-              Hide
+              {say('Hide')}
             </Button>
           </>
         ) : null}
@@ -38,7 +39,11 @@ function Truth({ id }: { readonly id: string }) {
         {shown && query.isError ? (
           <Notice
             tone={refused ? 'warn' : 'bad'}
-            title={refused ? 'Only faculty and administrators can see the truth.' : 'The truth could not be loaded.'}
+            title={
+              refused
+                ? say('Only faculty and administrators can see the truth.')
+                : say('The truth could not be loaded.')
+            }
           >
             {query.error.message}
           </Notice>
@@ -55,20 +60,20 @@ export function CasePage({ id }: { readonly id: string }) {
   const palette = usePalette();
   const found = query.data;
   const summary = useQuery(casesQuery({ search: id })).data?.cases.find((one) => one.id === id);
-  useTitle(found?.title ?? 'Case');
+  useTitle(found?.title ?? say('Case'));
   return (
     <div className={styles.page}>
       <p>
-        <Link href="/cases">← Cases</Link>
+        <Link href="/cases">← {say('Cases')}</Link>
       </p>
       {query.isError ? (
-        <Notice tone="bad" title="The case could not be loaded." onRetry={() => void query.refetch()}>
+        <Notice tone="bad" title={say('The case could not be loaded.')} onRetry={() => void query.refetch()}>
           {query.error.message}
         </Notice>
       ) : null}
       {query.isPending ? (
         <div role="status">
-          <span className="hidden-visually">Loading the case</span>
+          <span className="hidden-visually">{say('Loading the case')}</span>
           <Skeleton height="480px" />
         </div>
       ) : null}
@@ -77,13 +82,22 @@ export function CasePage({ id }: { readonly id: string }) {
           <h1>{found.title}</h1>
           <Facts
             facts={[
-              { name: 'Source', value: found.source },
-              { name: 'Created', value: formatDateTime(found.made_utc_us) },
-              { name: 'Channel', value: found.channel === 'planned' ? 'trainee drills, then palpates' : 'pre-drilled' },
-              { name: 'Bone', value: found.preparation === 'filled' ? 'filled' : 'published: marrow is not felt' },
+              { name: say('Source'), value: found.source },
+              { name: say('Created'), value: formatDateTime(found.made_utc_us) },
               {
-                name: 'Tract',
-                value: `${formatLength(found.tract.length_m)} long, ${formatLength(metre(2 * found.tract.radius_m))} wide`,
+                name: say('Channel'),
+                value: found.channel === 'planned' ? say('trainee drills, then palpates') : say('pre-drilled'),
+              },
+              {
+                name: say('Bone'),
+                value: found.preparation === 'filled' ? say('filled') : say('published: marrow is not felt'),
+              },
+              {
+                name: say('Tract'),
+                value: say('{length} long, {width} wide', {
+                  length: formatLength(found.tract.length_m),
+                  width: formatLength(metre(2 * found.tract.radius_m)),
+                }),
               },
             ]}
           />
@@ -93,11 +107,11 @@ export function CasePage({ id }: { readonly id: string }) {
             </p>
           ) : null}
           <div className={styles.pair}>
-            <Card title="Tract in the bone">
+            <Card title={say('Tract in the bone')}>
               {preview.isError ? (
                 <Notice
                   tone="warn"
-                  title="The bone could not be loaded. The view does not show it."
+                  title={say('The bone could not be loaded. The view does not show it.')}
                   onRetry={() => void preview.refetch()}
                 >
                   {preview.error.message}
@@ -111,7 +125,7 @@ export function CasePage({ id }: { readonly id: string }) {
                   breach={null}
                   bone={preview.data ?? null}
                   palette={palette}
-                  summary="The tract and the surrounding bone."
+                  summary={say('The tract and the surrounding bone.')}
                   button={(label, text, press, pressed) => (
                     <Button label={label} onClick={press} {...(pressed === undefined ? {} : { pressed })}>
                       {text}

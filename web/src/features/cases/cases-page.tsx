@@ -14,6 +14,7 @@ import {
   type Making,
   type SourceVolume,
 } from '@/api';
+import { marked, say } from '@/language';
 import {
   Badge,
   Button,
@@ -36,32 +37,34 @@ function Volumes() {
   const released = query.data?.volumes.filter(({ state }) => state === 'released');
   const held = query.data?.volumes.filter(({ state }) => state === 'held').length ?? 0;
   return (
-    <Card title="Create a case from a volume">
+    <Card title={say('Create a case from a volume')}>
       {query.isError ? (
-        <Notice tone="bad" title="The volumes could not be loaded." onRetry={() => void query.refetch()}>
+        <Notice tone="bad" title={say('The volumes could not be loaded.')} onRetry={() => void query.refetch()}>
           {query.error.message}
         </Notice>
       ) : (
         <div className={styles.stack}>
           <DataTable<SourceVolume>
-            caption="Released volumes"
+            caption={say('Released volumes')}
             rows={released}
             keyOf={({ id }) => id}
-            empty="No released volumes yet. An administrator or the programme director reviews every imported volume before its release."
+            empty={say(
+              'No released volumes yet. An administrator or the programme director reviews every imported volume before its release.',
+            )}
             columns={[
               {
-                name: 'Volume',
+                name: say('Volume'),
                 by: (one) => one.name,
                 cell: (one) => <Link href={`/cases/new/${one.id}`}>{one.name}</Link>,
               },
-              { name: 'Source', by: (one) => one.source, cell: (one) => one.source },
-              { name: 'Voxels', cell: (one) => one.dims.map(formatCount).join(' × '), number: true },
-              { name: 'Imported', by: (one) => one.made_utc_us, cell: (one) => formatDateTime(one.made_utc_us) },
+              { name: say('Source'), by: (one) => one.source, cell: (one) => one.source },
+              { name: say('Voxels'), cell: (one) => one.dims.map(formatCount).join(' × '), number: true },
+              { name: say('Imported'), by: (one) => one.made_utc_us, cell: (one) => formatDateTime(one.made_utc_us) },
             ]}
           />
           {held > 0 ? (
             <p className={styles.muted}>
-              {formatCount(held)} {held === 1 ? 'volume is' : 'volumes are'} waiting for review.
+              {say('{held, plural, one {# volume is} other {# volumes are}} waiting for review.', { held })}
             </p>
           ) : null}
         </div>
@@ -83,30 +86,34 @@ function CasesInPreparation() {
   }, [done, client]);
   if (shown.length === 0) return null;
   return (
-    <Card title="Cases in preparation">
+    <Card title={say('Cases in preparation')}>
       <Table<Making>
-        caption="Cases in preparation"
+        caption={say('Cases in preparation')}
         rows={shown}
         keyOf={({ id }) => id}
         empty=""
         columns={[
-          { name: 'Case', cell: (one) => one.title },
+          { name: say('Case'), cell: (one) => one.title },
           {
-            name: 'State',
+            name: say('State'),
             cell: (one) =>
               one.state === 'failed' ? (
                 <span>
-                  <Badge tone="bad">failed</Badge> {one.error} <Link href={`/cases/new/${one.volume}`}>Try again</Link>
+                  <Badge tone="bad">{say('failed')}</Badge> {one.error}{' '}
+                  <Link href={`/cases/new/${one.volume}`}>{say('Try again')}</Link>
                 </span>
               ) : (
                 <span className={styles.going}>
-                  <Progress done={one.share} of={1} label={`Preparing ${one.title}`} />
+                  <Progress done={one.share} of={1} label={say('Preparing {title}', { title: one.title })} />
                   <span>{formatShare(share(one.share))}</span>
-                  <span>{one.state === 'queued' ? 'queued' : one.phase}</span>
+                  <span>{one.state === 'queued' ? say('queued') : one.phase}</span>
                 </span>
               ),
           },
-          { name: 'Requested', cell: (one) => `${formatDateTime(one.made_utc_us)} by ${one.made_by}` },
+          {
+            name: say('Requested'),
+            cell: (one) => say('{time} by {name}', { time: formatDateTime(one.made_utc_us), name: one.made_by }),
+          },
         ]}
       />
     </Card>
@@ -116,25 +123,25 @@ function CasesInPreparation() {
 const kFilters: readonly ListFilter[] = [
   {
     name: 'state',
-    label: 'State',
+    label: marked('State'),
     choices: [
-      { value: 'available', text: 'available' },
-      { value: 'retired', text: 'retired' },
+      { value: 'available', text: marked('available') },
+      { value: 'retired', text: marked('retired') },
     ],
   },
   {
     name: 'channel',
-    label: 'Channel',
+    label: marked('Channel'),
     choices: [
-      { value: 'drilled', text: 'drilled' },
-      { value: 'planned', text: 'trainee drills' },
+      { value: 'drilled', text: marked('drilled') },
+      { value: 'planned', text: marked('trainee drills') },
     ],
   },
 ];
 
 /** Cases of the palpation rig: volumes to create them from, cases in preparation, all cases. */
 export function CasesPage() {
-  useTitle('Cases');
+  useTitle(say('Cases'));
   const client = useQueryClient();
   const list = useList(casesAsked);
   const query = useQuery(casesQuery(list.query));
@@ -149,71 +156,71 @@ export function CasesPage() {
   return (
     <div className={styles.page}>
       <div>
-        <h1>Cases</h1>
+        <h1>{say('Cases')}</h1>
         <p className={styles.lead}>
-          A case is a patient’s bone with a drilled channel. The truth (which wall is breached, and where) is stored
-          separately; stations receive the case without it. In cases without a pre-drilled channel, the trainee drills
-          the channel and then palpates it.
+          {say(
+            'A case is a patient’s bone with a drilled channel. The truth (which wall is breached, and where) is stored separately; stations receive the case without it. In cases without a pre-drilled channel, the trainee drills the channel and then palpates it.',
+          )}
         </p>
       </div>
       {may ? <Volumes /> : null}
       {may ? <CasesInPreparation /> : null}
       {query.isError ? (
-        <Notice tone="bad" title="The cases could not be loaded." onRetry={() => void query.refetch()}>
+        <Notice tone="bad" title={say('The cases could not be loaded.')} onRetry={() => void query.refetch()}>
           {query.error.message}
         </Notice>
       ) : (
-        <Card title="Cases" aside={may ? <Link href="/assignments/new">Assign cases</Link> : undefined}>
+        <Card title={say('Cases')} aside={may ? <Link href="/assignments/new">{say('Assign cases')}</Link> : undefined}>
           <div className={styles.stack}>
             <ListTable<CaseSummary>
-              caption="Cases"
+              caption={say('Cases')}
               list={list}
               page={query.data}
               views={views}
               usual="published"
-              searchLabel="Find by case or source"
+              searchLabel={say('Find by case or source')}
               filters={kFilters}
               rows={query.data?.cases}
               keyOf={({ id }) => id}
-              empty="No cases yet. Create one from a volume."
+              empty={say('No cases yet. Create one from a volume.')}
               minWidth={640}
               columns={[
                 {
-                  name: 'Case',
+                  name: say('Case'),
                   sort: 'title',
                   cell: (one) => <Link href={`/cases/${one.id}`}>{one.title}</Link>,
                 },
-                { name: 'Source', sort: 'source', cell: (one) => one.source },
-                { name: 'Created', sort: 'made', falls: true, cell: (one) => formatDateTime(one.made_utc_us) },
-                { name: 'Trials', cell: (one) => formatCount(one.trials), number: true },
+                { name: say('Source'), sort: 'source', cell: (one) => one.source },
+                { name: say('Created'), sort: 'made', falls: true, cell: (one) => formatDateTime(one.made_utc_us) },
+                { name: say('Trials'), cell: (one) => formatCount(one.trials), number: true },
                 {
-                  name: 'State',
+                  name: say('State'),
                   cell: (one) =>
                     one.retired ? (
-                      <Badge>retired</Badge>
+                      <Badge>{say('retired')}</Badge>
                     ) : (
                       <>
-                        <Badge tone="good">available</Badge> <FeltSign {...one} />
+                        <Badge tone="good">{say('available')}</Badge> <FeltSign {...one} />
                         {one.planned ? (
                           <>
                             {' '}
-                            <Badge>trainee drills</Badge>
+                            <Badge>{say('trainee drills')}</Badge>
                           </>
                         ) : null}
                       </>
                     ),
                 },
                 {
-                  name: <span className="hidden-visually">Actions</span>,
+                  name: <span className="hidden-visually">{say('Actions')}</span>,
                   cell: (one) =>
                     may ? (
                       <Button
                         look="quiet"
-                        label={`${one.retired ? 'Restore' : 'Retire'}: ${one.title}`}
+                        label={`${one.retired ? say('Restore') : say('Retire')}: ${one.title}`}
                         disabled={retired.isPending}
                         onClick={() => retired.mutate({ one, away: !one.retired })}
                       >
-                        {one.retired ? 'Restore' : 'Retire'}
+                        {one.retired ? say('Restore') : say('Retire')}
                       </Button>
                     ) : null,
                 },
@@ -222,13 +229,15 @@ export function CasesPage() {
             <p className={styles.message} role="status">
               {last ? (
                 <>
-                  {last.one.title} is {last.away ? 'retired; existing assignments continue.' : 'available again.'}{' '}
+                  {last.away
+                    ? say('{title} is retired; existing assignments continue.', { title: last.one.title })
+                    : say('{title} is available again.', { title: last.one.title })}{' '}
                   <Button look="quiet" onClick={() => retired.mutate({ one: last.one, away: !last.away })}>
-                    Undo
+                    {say('Undo')}
                   </Button>
                 </>
               ) : null}
-              {retired.isError ? `The action failed: ${retired.error.message}` : null}
+              {retired.isError ? say('The action failed: {message}', { message: retired.error.message }) : null}
             </p>
           </div>
         </Card>

@@ -11,7 +11,8 @@ import {
   type WallCertificate,
 } from '@/api';
 import { kSides, WallBands, type SideBands } from '@/charts';
-import { Badge, Button, Card, Notice, Skeleton, Table } from '@/ui';
+import { say } from '@/language';
+import { Badge, Button, Card, Notice, Skeleton, Table, wallName } from '@/ui';
 import { formatFigure, formatLength, formatShare, kNone, share, type Metre } from '@/units';
 import styles from './cases.module.css';
 
@@ -42,7 +43,7 @@ const bandsOf = (walls: readonly WallCertificate[]): SideBands[] =>
 export function FeltSign({ felt, planned }: Pick<CaseSummary, 'felt' | 'planned'>) {
   if (planned) return null;
   const { tone, text } = kFeltSigns[felt];
-  return <Badge tone={tone}>{text}</Badge>;
+  return <Badge tone={tone}>{say(text)}</Badge>;
 }
 
 /** What an ideal observer can tell of each wall. */
@@ -58,38 +59,38 @@ export function CertificateView({
     <div className={styles.stack}>
       {bands.length > 0 ? <WallBands bands={bands} length_m={length_m} least={kLeastSide} /> : null}
       <Table
-        caption="What can be told of a breach of each wall"
+        caption={say('What can be told of a breach of each wall')}
         rows={certificate.walls}
         keyOf={({ wall }) => wall}
         empty=""
         minWidth={420}
         columns={[
-          { name: 'Wall', cell: ({ wall }) => wall },
+          { name: say('Wall'), cell: ({ wall }) => wallName(wall) },
           {
-            name: 'Breach',
+            name: say('Breach'),
             cell: ({ passes, why_not }) =>
               why_not === null ? (
-                <Badge tone={passes ? 'good' : 'bad'}>{passes ? 'can be felt' : 'cannot be felt'}</Badge>
+                <Badge tone={passes ? 'good' : 'bad'}>{passes ? say('can be felt') : say('cannot be felt')}</Badge>
               ) : (
                 why_not
               ),
           },
-          { name: 'Depth', cell: ({ at_m }) => (at_m === null ? kNone : formatLength(at_m)), number: true },
+          { name: say('Depth'), cell: ({ at_m }) => (at_m === null ? kNone : formatLength(at_m)), number: true },
           { name: 'K', cell: ({ k }) => number(k), number: true },
           { name: 'B', cell: ({ b }) => number(b), number: true },
           { name: 'FA', cell: ({ fa }) => number(fa), number: true },
           {
-            name: 'Right',
+            name: say('Right'),
             cell: ({ foretold }) => (foretold === undefined ? kNone : formatShare(share(foretold))),
             number: true,
           },
         ]}
       />
       <p className={styles.muted}>
-        K: d′ of the breach against the same place when it is whole. B: against all other places of this tract. FA: of
-        the whole place that feels most like a breach. A side wall needs K and B of {kLeastSide} and B at least 0.5 over
-        FA; the end needs K of 2. Upper bounds, of an ideal observer. Right: the share of right answers that is foretold
-        of a hand which presses with the tip; a wall needs {kLeastForetold_percent} %.
+        {say(
+          'K: d′ of the breach against the same place when it is whole. B: against all other places of this tract. FA: of the whole place that feels most like a breach. A side wall needs K and B of {least} and B at least 0.5 over FA; the end needs K of 2. Upper bounds, of an ideal observer. Right: the share of right answers that is foretold of a hand which presses with the tip; a wall needs {foretold} %.',
+          { least: kLeastSide, foretold: kLeastForetold_percent },
+        )}
       </p>
     </div>
   );
@@ -101,15 +102,18 @@ export function CaseCertificate({ id, length_m }: { readonly id: string; readonl
   const query = useQuery({ ...caseCertificateQuery(id), enabled: shown });
   const none = query.error instanceof ApiError && query.error.code === 'not_found';
   return (
-    <Card title="What can be felt">
+    <Card title={say('What can be felt')}>
       <div className={styles.truth}>
         <Button look={shown ? 'quiet' : 'plain'} onClick={() => setShown(!shown)}>
-          {shown ? 'Hide' : 'Show the certificate'}
+          {shown ? say('Hide') : say('Show the certificate')}
         </Button>
         {shown && query.isPending ? <Skeleton height="300px" /> : null}
         {shown && query.data ? <CertificateView certificate={query.data} length_m={length_m} /> : null}
         {shown && query.isError ? (
-          <Notice tone="warn" title={none ? 'This case has no certificate.' : 'The certificate could not be loaded.'}>
+          <Notice
+            tone="warn"
+            title={none ? say('This case has no certificate.') : say('The certificate could not be loaded.')}
+          >
             {query.error.message}
           </Notice>
         ) : null}
@@ -133,13 +137,16 @@ export function PlannedCertificate({
   const whole = useQuery(plannedCertificateQuery(volume, first.isSuccess ? asked : null, 'whole'));
   const found = whole.data ?? first.data;
   const error = first.error ?? whole.error;
-  if (!asked) return <p className={styles.muted}>Without a pre-drilled channel there is nothing to feel yet.</p>;
+  if (!asked)
+    return <p className={styles.muted}>{say('Without a pre-drilled channel there is nothing to feel yet.')}</p>;
   return (
     <div className={styles.stack} data-part="certificate" role="status">
-      {found && !whole.data ? <p className={styles.muted}>One place of each wall so far; trying every place…</p> : null}
-      {!found && !error ? <p className={styles.muted}>Palpating…</p> : null}
+      {found && !whole.data ? (
+        <p className={styles.muted}>{say('One place of each wall so far; trying every place…')}</p>
+      ) : null}
+      {!found && !error ? <p className={styles.muted}>{say('Palpating…')}</p> : null}
       {error ? (
-        <Notice tone="warn" title="The plan could not be palpated.">
+        <Notice tone="warn" title={say('The plan could not be palpated.')}>
           {error.message}
         </Notice>
       ) : null}

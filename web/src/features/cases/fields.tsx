@@ -1,10 +1,11 @@
 import { useState } from 'react';
 import { kWalls, type Vec3 } from '@/api';
-import { Field, Select } from '@/ui';
+import { marked, say } from '@/language';
+import { Field, Select, wallName } from '@/ui';
 import styles from './cases.module.css';
 import { kBreachDepth_mm, type Breach, type End, type Plan, type Preparation } from './plan';
 
-const kAxes = ['x (left)', 'y (back)', 'z (up)'] as const;
+const kAxes = [marked('x (left)'), marked('y (back)'), marked('z (up)')] as const;
 const inMillimetres = (value: number | undefined | null) =>
   value === undefined || value === null ? '' : String(Math.round(value * 1e5) / 100);
 
@@ -38,7 +39,7 @@ export function Millimetres({
       min={min}
       max={max}
       value={text}
-      error={wrong ? `Enter a value from ${min} to ${max} mm.` : ''}
+      error={wrong ? say('Enter a value from {min} to {max} mm.', { min, max }) : ''}
       required={required}
       onBlur={() => setTyped(null)}
       onChange={(event) => {
@@ -76,13 +77,14 @@ export function PointFields({
   return (
     <div className={styles.point} data-end={end}>
       <label className={styles.choose}>
-        <input type="radio" name="end" checked={chosen} onChange={onChoose} /> {end === 'entry' ? 'Entry' : 'Target'}
+        <input type="radio" name="end" checked={chosen} onChange={onChoose} />{' '}
+        {end === 'entry' ? say('Entry') : say('Target')}
       </label>
       <div className={styles.three}>
         {kAxes.map((axis, i) => (
           <Millimetres
             key={axis}
-            label={`${axis}, mm`}
+            label={say('{axis}, mm', { axis: say(axis) })}
             value_m={at?.[i] ?? null}
             onValue={(value) => place(i, value)}
           />
@@ -110,28 +112,28 @@ export function BreachFields({
   return (
     <div className={styles.breach}>
       <Select
-        label="Channel"
+        label={say('Channel')}
         value={plan.whole ? 'planned' : 'drilled'}
         options={[
-          { value: 'drilled', text: 'pre-drilled' },
-          { value: 'planned', text: 'trainee drills' },
+          { value: 'drilled', text: say('pre-drilled') },
+          { value: 'planned', text: say('trainee drills') },
         ]}
         onChange={(event) => onWhole(event.target.value === 'planned')}
       />
       <Select
-        label="Bone"
+        label={say('Bone')}
         value={plan.preparation}
         options={[
-          { value: 'filled', text: 'filled: all of it is felt' },
-          { value: 'published', text: 'published: marrow is not felt' },
+          { value: 'filled', text: say('filled: all of it is felt') },
+          { value: 'published', text: say('published: marrow is not felt') },
         ]}
         onChange={(event) => onPreparation(event.target.value === 'published' ? 'published' : 'filled')}
       />
       {plan.whole ? null : (
         <Select
-          label="Breach"
+          label={say('Breach')}
           value={breach?.wall ?? ''}
-          options={[{ value: '', text: 'none' }, ...kWalls.map((wall) => ({ value: wall, text: wall }))]}
+          options={[{ value: '', text: say('none') }, ...kWalls.map((wall) => ({ value: wall, text: wallName(wall) }))]}
           onChange={(event) => {
             const wall = kWalls.find((one) => one === event.target.value);
             onBreach(
@@ -144,7 +146,7 @@ export function BreachFields({
       )}
       {breach ? (
         <Millimetres
-          label="Depth beyond the bone, mm"
+          label={say('Depth beyond the bone, mm')}
           value_m={breach.depth_m}
           min={kBreachDepth_mm.least}
           max={kBreachDepth_mm.most}
@@ -155,7 +157,7 @@ export function BreachFields({
       ) : null}
       {breach && breach.wall !== 'anterior' ? (
         <Millimetres
-          label="At depth, mm (empty: where it is told best)"
+          label={say('At depth, mm (empty: where it is told best)')}
           value_m={breach.at_m}
           min={0}
           max={longest_mm}

@@ -2,6 +2,7 @@ import { useMutation, useQueryClient } from '@tanstack/react-query';
 import { useState, type FormEvent } from 'react';
 import { useLocation } from 'wouter';
 import { makeCase, makingsQuery, type NewCase } from '@/api';
+import { say } from '@/language';
 import { Button, Field, Notice } from '@/ui';
 import styles from './cases.module.css';
 import { caseOf, fiveOf, requestOf, type Plan } from './plan';
@@ -34,27 +35,27 @@ export function Make({
   return (
     <form className={styles.make} onSubmit={submit}>
       <Field
-        label="Title (not shown to trainees)"
+        label={say('Title (not shown to trainees)')}
         value={title}
         required
         maxLength={200}
-        placeholder="L3 left, medial breach"
+        placeholder={say('L3 left, medial breach')}
         onChange={(event) => setTitle(event.target.value)}
       />
       <Button look="solid" type="submit" disabled={!ready || request === null || title.trim() === '' || made.isPending}>
-        {made.isPending ? 'Submitting…' : 'Create case'}
+        {made.isPending ? say('Submitting…') : say('Create case')}
       </Button>
       {plan.whole || plan.preparation !== 'filled' ? null : (
         <Button
           disabled={!ready || request === null || title.trim() === '' || made.isPending}
           onClick={() => request && made.mutate(fiveOf(request, volume, title.trim()))}
         >
-          Create five, one a wall, equally hard
+          {say('Create five, one a wall, equally hard')}
         </Button>
       )}
-      <p className={styles.muted}>Trainees see the blind name from the assignment instead of this title.</p>
+      <p className={styles.muted}>{say('Trainees see the blind name from the assignment instead of this title.')}</p>
       {made.isError ? (
-        <Notice tone="bad" title="The case was not created.">
+        <Notice tone="bad" title={say('The case was not created.')}>
           {made.error.message}
         </Notice>
       ) : null}

@@ -13,7 +13,8 @@ import {
   type Window,
 } from '@/api';
 import { PlanView } from '@/charts';
-import { Button, Card, Notice, Select, Skeleton, usePalette, useTitle, useSettled } from '@/ui';
+import { marked, say, Sentence } from '@/language';
+import { Button, Card, Notice, Select, Skeleton, usePalette, useTitle, useSettled, wallName } from '@/ui';
 import { formatLength } from '@/units';
 import styles from './cases.module.css';
 import { PlannedCertificate } from './certificate';
@@ -24,9 +25,9 @@ import { Slices } from './slices';
 import { Walls } from './walls';
 
 const kWindows: Record<string, { readonly text: string; readonly window: Window }> = {
-  bone: { text: 'Bone', window: { low: -200, high: 1100 } },
-  wide: { text: 'Wide', window: { low: -1000, high: 2000 } },
-  soft: { text: 'Soft tissue', window: { low: -160, high: 240 } },
+  bone: { text: marked('Bone'), window: { low: -200, high: 1100 } },
+  wide: { text: marked('Wide'), window: { low: -1000, high: 2000 } },
+  soft: { text: marked('Soft tissue'), window: { low: -160, high: 240 } },
 };
 
 function middleOf(block: Preview): Vec3 {
@@ -47,13 +48,13 @@ function Findings({
   if (!plan.entry || !plan.target)
     return (
       <p className={styles.muted} role="status">
-        Place the entry, then the target: click in a slice, drag a marker, or enter coordinates.
+        {say('Place the entry, then the target: click in a slice, drag a marker, or enter coordinates.')}
       </p>
     );
   if (!found)
     return (
       <p className={styles.muted} role="status">
-        {looking ? 'Analysing the bone…' : ''}
+        {looking ? say('Analysing the bone…') : ''}
       </p>
     );
   const { breach, problems, warnings } = found;
@@ -66,25 +67,34 @@ function Findings({
       ))}
       {warnings.map((warning) => (
         <p key={warning} data-part="warning">
-          Warning: {warning}
+          {say('Warning: {warning}', { warning })}
         </p>
       ))}
       {found.tract ? (
         <p>
-          {found.side === 'left' ? 'Left' : 'Right'} side, tract of {formatLength(found.length_m)}.
+          {found.side === 'left'
+            ? say('Left side, tract of {length}.', { length: formatLength(found.length_m) })
+            : say('Right side, tract of {length}.', { length: formatLength(found.length_m) })}
         </p>
       ) : null}
       {breach ? (
         <p data-part="breach">
-          The {breach.wall} wall is breached at a depth of <strong>{formatLength(breach.at_m)}</strong>, where it is{' '}
-          <strong>{formatLength(breach.wall_thickness_m)}</strong> thick; the tool extends{' '}
-          {formatLength(breach.depth_m)} beyond the bone.
+          <Sentence
+            text="The {wall} wall is breached at a depth of <strong>{at}</strong>, where it is <strong>{thickness}</strong> thick; the tool extends {beyond} beyond the bone."
+            values={{
+              wall: wallName(breach.wall),
+              at: formatLength(breach.at_m),
+              thickness: formatLength(breach.wall_thickness_m),
+              beyond: formatLength(breach.depth_m),
+            }}
+            parts={{ strong: (words) => <strong>{words}</strong> }}
+          />
         </p>
       ) : found.tract ? (
         <p>
           {plan.whole
-            ? 'No channel is pre-drilled: trainees drill this tract and then palpate it.'
-            : 'No wall is breached.'}
+            ? say('No channel is pre-drilled: trainees drill this tract and then palpate it.')
+            : say('No wall is breached.')}
         </p>
       ) : null}
     </div>
@@ -128,20 +138,20 @@ function Workbench({ volume, block }: { readonly volume: SourceVolume; readonly 
     <div className={styles.bench}>
       <div className={styles.left}>
         <Card
-          title="Slices"
+          title={say('Slices')}
           aside={
             <span className={styles.tools}>
               <Select
-                label={<span className="hidden-visually">Window</span>}
+                label={<span className="hidden-visually">{say('Window')}</span>}
                 value={window_}
-                options={Object.entries(kWindows).map(([value, { text }]) => ({ value, text }))}
+                options={Object.entries(kWindows).map(([value, { text }]) => ({ value, text: say(text) }))}
                 onChange={(event) => setWindow(event.target.value)}
               />
               <Button onClick={() => step({ kind: 'undo' })} disabled={past.length === 0}>
-                Undo
+                {say('Undo')}
               </Button>
               <Button onClick={() => step({ kind: 'redo' })} disabled={future.length === 0}>
-                Redo
+                {say('Redo')}
               </Button>
             </span>
           }
@@ -159,13 +169,13 @@ function Workbench({ volume, block }: { readonly volume: SourceVolume; readonly 
           />
         </Card>
         <div className={styles.pair}>
-          <Card title="3-D view">
+          <Card title={say('3-D view')}>
             <PlanView
               tract={found?.tract ?? null}
               breach={found?.breach ?? null}
               bone={block}
               palette={palette}
-              summary="The bone with the planned tract and its breach."
+              summary={say('The bone with the planned tract and its breach.')}
               button={(label, text, press, pressed) => (
                 <Button label={label} onClick={press} {...(pressed === undefined ? {} : { pressed })}>
                   {text}
@@ -173,26 +183,26 @@ function Workbench({ volume, block }: { readonly volume: SourceVolume; readonly 
               )}
             />
           </Card>
-          <Card title="Walls along the tract">
+          <Card title={say('Walls along the tract')}>
             {found?.tract ? (
               <Walls found={found} />
             ) : (
               <p className={`${styles.muted} ${styles.tall}`}>
-                Place both ends of the tract to see the thickness of the walls.
+                {say('Place both ends of the tract to see the thickness of the walls.')}
               </p>
             )}
           </Card>
         </div>
         {found?.tract ? (
-          <Card title="What can be felt">
+          <Card title={say('What can be felt')}>
             <PlannedCertificate volume={volume.id} request={request} length_m={found.length_m} />
           </Card>
         ) : null}
       </div>
-      <Card title="Tract" className={styles.side ?? ''}>
+      <Card title={say('Tract')} className={styles.side ?? ''}>
         <div className={styles.stack}>
           <fieldset className={styles.ends}>
-            <legend className="hidden-visually">End of the tract that a click places</legend>
+            <legend className="hidden-visually">{say('End of the tract that a click places')}</legend>
             {(['entry', 'target'] as const).map((end) => (
               <PointFields
                 key={end}
@@ -216,7 +226,7 @@ function Workbench({ volume, block }: { readonly volume: SourceVolume; readonly 
             onPreparation={(preparation) => step({ kind: 'change', to: { preparation } })}
           />
           {answer.isError ? (
-            <Notice tone="bad" title="The plan could not be checked." onRetry={() => void answer.refetch()}>
+            <Notice tone="bad" title={say('The plan could not be checked.')} onRetry={() => void answer.refetch()}>
               {answer.error.message}
             </Notice>
           ) : (
@@ -237,7 +247,7 @@ function Chosen({ volume }: { readonly volume: SourceVolume }) {
   const block = useQuery(volumeBoneQuery(volume.id));
   if (block.isError)
     return (
-      <Notice tone="bad" title="The volume could not be loaded." onRetry={() => void block.refetch()}>
+      <Notice tone="bad" title={say('The volume could not be loaded.')} onRetry={() => void block.refetch()}>
         {block.error.message}
       </Notice>
     );
@@ -245,7 +255,7 @@ function Chosen({ volume }: { readonly volume: SourceVolume }) {
     <Workbench volume={volume} block={block.data} />
   ) : (
     <div role="status">
-      <span className="hidden-visually">Loading the volume</span>
+      <span className="hidden-visually">{say('Loading the volume')}</span>
       <Skeleton height="640px" />
     </div>
   );
@@ -255,38 +265,39 @@ function Chosen({ volume }: { readonly volume: SourceVolume }) {
 export function NewCasePage({ volume: id }: { readonly volume: string }) {
   const volumes = useQuery(sourceVolumesQuery);
   const volume = volumes.data?.volumes.find((one) => one.id === id);
-  useTitle('New case');
+  useTitle(say('New case'));
   return (
     <div className={styles.page}>
       <p>
-        <Link href="/cases">← Cases</Link>
+        <Link href="/cases">← {say('Cases')}</Link>
       </p>
       <div>
-        <h1>New case{volume ? ` from ${volume.name}` : ''}</h1>
+        <h1>{volume ? say('New case from {name}', { name: volume.name }) : say('New case')}</h1>
         <p className={styles.lead}>
-          Place the tract of a pedicle screw in the bone and choose where it breaches a wall. Coordinates are in
-          millimetres in the patient’s frame: x to the left, y to the back, z upwards.
+          {say(
+            'Place the tract of a pedicle screw in the bone and choose where it breaches a wall. Coordinates are in millimetres in the patient’s frame: x to the left, y to the back, z upwards.',
+          )}
         </p>
       </div>
       {volumes.isError ? (
-        <Notice tone="bad" title="The volumes could not be loaded." onRetry={() => void volumes.refetch()}>
+        <Notice tone="bad" title={say('The volumes could not be loaded.')} onRetry={() => void volumes.refetch()}>
           {volumes.error.message}
         </Notice>
       ) : null}
       {volumes.isPending ? (
         <div role="status">
-          <span className="hidden-visually">Loading</span>
+          <span className="hidden-visually">{say('Loading')}</span>
           <Skeleton height="640px" />
         </div>
       ) : null}
       {volumes.data && !volume ? (
-        <Notice tone="warn" title="Volume not found.">
-          It may have been rejected.
+        <Notice tone="warn" title={say('Volume not found.')}>
+          {say('It may have been rejected.')}
         </Notice>
       ) : null}
       {volume && volume.state !== 'released' ? (
-        <Notice tone="warn" title="This volume is not released.">
-          An administrator or the programme director must review it first.
+        <Notice tone="warn" title={say('This volume is not released.')}>
+          {say('An administrator or the programme director must review it first.')}
         </Notice>
       ) : null}
       {volume?.state === 'released' ? <Chosen volume={volume} /> : null}

@@ -2,14 +2,15 @@ import { useQuery } from '@tanstack/react-query';
 import { useMemo } from 'react';
 import { boundsOf, sliceQuery, type PlannedTract, type Preview, type SlicePlane, type Vec3, type Window } from '@/api';
 import { SliceView, type SliceMark } from '@/charts';
+import { marked, say } from '@/language';
 import { Notice } from '@/ui';
 import styles from './cases.module.css';
 import type { End, Plan } from './plan';
 
 const kPlanes: readonly { plane: SlicePlane; name: string; axis: 0 | 1 | 2; ends: readonly [string, string] }[] = [
-  { plane: 'axial', name: 'Axial', axis: 2, ends: ['feet', 'head'] },
-  { plane: 'coronal', name: 'Coronal', axis: 1, ends: ['front', 'back'] },
-  { plane: 'sagittal', name: 'Sagittal', axis: 0, ends: ['right', 'left'] },
+  { plane: 'axial', name: marked('Axial'), axis: 2, ends: [marked('feet'), marked('head')] },
+  { plane: 'coronal', name: marked('Coronal'), axis: 1, ends: [marked('front'), marked('back')] },
+  { plane: 'sagittal', name: marked('Sagittal'), axis: 0, ends: [marked('right'), marked('left')] },
 ];
 const kPitch_m = 0.0005;
 
@@ -53,10 +54,10 @@ function marksOf(plan: Plan, found: PlannedTract | undefined): SliceMark[] {
   if (plan.entry && plan.target) out.push({ id: 'tract', at: plan.entry, to: plan.target, look: 'tract', wide: 1.2 });
   if (found?.breach) {
     out.push({ id: 'breach', at: found.breach.from_m, to: found.breach.tip_m, look: 'breach', wide: 1.4 });
-    out.push({ id: 'hole', at: found.breach.breach_m, look: 'breach', text: 'breach', fixed: true });
+    out.push({ id: 'hole', at: found.breach.breach_m, look: 'breach', text: say('breach'), fixed: true });
   }
-  if (plan.target) out.push({ id: 'target', at: plan.target, look: 'target', text: 'target' });
-  if (plan.entry) out.push({ id: 'entry', at: plan.entry, look: 'entry', text: 'entry' });
+  if (plan.target) out.push({ id: 'target', at: plan.target, look: 'target', text: say('target') });
+  if (plan.entry) out.push({ id: 'entry', at: plan.entry, look: 'entry', text: say('entry') });
   return out;
 }
 
@@ -93,18 +94,18 @@ function OnePlane({
   return (
     <div>
       {query.isError ? (
-        <Notice tone="bad" title="This slice could not be loaded." onRetry={() => void query.refetch()}>
+        <Notice tone="bad" title={say('This slice could not be loaded.')} onRetry={() => void query.refetch()}>
           {query.error.message}
         </Notice>
       ) : null}
       <SliceView
-        name={name}
+        name={say(name)}
         picture={query.data ?? null}
         late={query.isPlaceholderData}
         at_m={at}
         from_m={low[axis]}
         to_m={high[axis]}
-        ends={ends}
+        ends={[say(ends[0]), say(ends[1])]}
         marks={marks}
         chosen={chosen}
         onAt={(to) => onFocus([axis === 0 ? to : focus[0], axis === 1 ? to : focus[1], axis === 2 ? to : focus[2]])}

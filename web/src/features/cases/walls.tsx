@@ -1,6 +1,7 @@
 import type { PlannedTract } from '@/api';
 import { curve, Plane } from '@/charts';
-import { Table } from '@/ui';
+import { say } from '@/language';
+import { Table, wallName } from '@/ui';
 import { formatLength, kNone, metre } from '@/units';
 import styles from './cases.module.css';
 
@@ -19,13 +20,17 @@ export function Walls({ found }: { readonly found: PlannedTract }) {
   const top = Math.min(Math.ceil(thickest), kMost_mm);
   const { breach } = found;
   const finding = breach
-    ? `The ${breach.wall} wall is breached at a depth of ${formatLength(breach.at_m)}, where it is ${formatLength(breach.wall_thickness_m)} thick.`
-    : 'No wall is breached.';
+    ? say('The {wall} wall is breached at a depth of {at}, where it is {thickness} thick.', {
+        wall: wallName(breach.wall),
+        at: formatLength(breach.at_m),
+        thickness: formatLength(breach.wall_thickness_m),
+      })
+    : say('No wall is breached.');
   return (
     <div className={styles.stack}>
       <Plane
-        across={{ title: 'depth along the tract, mm', from: 0, to: Math.max(length_mm, 1) }}
-        up={{ title: 'wall thickness, mm', from: 0, to: top }}
+        across={{ title: say('depth along the tract, mm'), from: 0, to: Math.max(length_mm, 1) }}
+        up={{ title: say('wall thickness, mm'), from: 0, to: top }}
         height_px={230}
         data={{
           name: 'wall thickness',
@@ -34,7 +39,10 @@ export function Walls({ found }: { readonly found: PlannedTract }) {
             depth_m.map((at, i) => [wall, at, thickness_m[i] ?? null]),
           ),
         }}
-        summary={`Thickness of the walls along the tract. ${finding} The table lists the thinnest point of each wall.`}
+        summary={say(
+          'Thickness of the walls along the tract. {finding} The table lists the thinnest point of each wall.',
+          { finding },
+        )}
       >
         {(places) => (
           <g className={styles.walls}>
@@ -69,38 +77,37 @@ export function Walls({ found }: { readonly found: PlannedTract }) {
       <ul className={styles.legend} aria-hidden="true">
         {kSides.map((wall) => (
           <li key={wall} data-wall={wall}>
-            {wall}
+            {wallName(wall)}
           </li>
         ))}
       </ul>
       <Table
-        caption="Thinnest point of each wall"
+        caption={say('Thinnest point of each wall')}
         rows={inner(found)}
         keyOf={({ wall }) => wall}
         empty=""
         minWidth={420}
         columns={[
           {
-            name: 'Wall',
+            name: say('Wall'),
             cell: ({ wall, breached }) => (
               <span data-part="wall-name">
-                {wall}
-                {breached ? ', breached' : ''}
+                {breached ? say('{wall}, breached', { wall: wallName(wall) }) : wallName(wall)}
               </span>
             ),
           },
           {
-            name: 'Thickness',
+            name: say('Thickness'),
             cell: ({ thinnest }) => (thinnest ? formatLength(metre(thinnest.thickness_m)) : kNone),
             number: true,
           },
           {
-            name: 'Depth',
+            name: say('Depth'),
             cell: ({ thinnest }) => (thinnest ? formatLength(metre(thinnest.at_m)) : kNone),
             number: true,
           },
           {
-            name: 'Distance from the axis',
+            name: say('Distance from the axis'),
             cell: ({ thinnest }) => (thinnest ? formatLength(metre(thinnest.inner_m)) : kNone),
             number: true,
           },

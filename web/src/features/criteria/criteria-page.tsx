@@ -11,6 +11,7 @@ import {
   type CriteriaEntry,
   type CriteriaVersion,
 } from '@/api';
+import { marked, say } from '@/language';
 import { Badge, Button, Card, DataTable, Field, Notice, Select } from '@/ui';
 import { formatCount, formatDateTime } from '@/units';
 import styles from './criteria.module.css';
@@ -20,8 +21,12 @@ import { Requirements, useMetrics } from './parts';
 import { RequirementsEditor } from './requirements-editor';
 
 type Kind = CriteriaEntry['kind'];
-const kKindNames: Record<Kind, string> = { programme: 'Whole programme', case: 'Case', assignment: 'Assignment' };
-const nameOf = ({ kind, title }: CriteriaEntry) => (kind === 'programme' ? kKindNames.programme : title);
+const kKindNames: Record<Kind, string> = {
+  programme: marked('Whole programme'),
+  case: marked('Case'),
+  assignment: marked('Assignment'),
+};
+const nameOf = ({ kind, title }: CriteriaEntry) => (kind === 'programme' ? say(kKindNames.programme) : title);
 
 /** States a new version: of the programme, a case or an assignment. */
 function Stating({ entries }: { readonly entries: readonly CriteriaEntry[] }) {
@@ -58,33 +63,33 @@ function Stating({ entries }: { readonly entries: readonly CriteriaEntry[] }) {
   const items = kind === 'case' ? cases : assignments;
   const wrong =
     kind !== 'programme' && subject === ''
-      ? `Choose the ${kind}.`
+      ? say('Choose the {kind}.', { kind })
       : requirements.length === 0
-        ? 'Add a requirement.'
+        ? say('Add a requirement.')
         : (requirements.map(requirementProblem).find((one) => one !== '') ?? '');
   return (
-    <Card title="Set criteria">
+    <Card title={say('Set criteria')}>
       <div className={styles.stack}>
         <div className={styles.form}>
           <Select
-            label="Of"
+            label={say('Of')}
             value={kind}
             onChange={(event) => choose(event.target.value as Kind, '')}
-            options={kinds.map((value) => ({ value, text: kKindNames[value] }))}
+            options={kinds.map((value) => ({ value, text: say(kKindNames[value]) }))}
           />
           {kind === 'programme' ? null : (
             <Select
-              label={kKindNames[kind]}
+              label={say(kKindNames[kind])}
               value={subject}
               onChange={(event) => choose(kind, event.target.value)}
               options={[
-                { value: '', text: `Choose the ${kind}` },
+                { value: '', text: say('Choose the {kind}', { kind }) },
                 ...items.map(({ id, title }) => ({ value: id, text: title })),
               ]}
             />
           )}
           <Field
-            label="Reason of the change (optional)"
+            label={say('Reason of the change (optional)')}
             value={reason}
             maxLength={400}
             onChange={(event) => setReason(event.target.value)}
@@ -92,15 +97,15 @@ function Stating({ entries }: { readonly entries: readonly CriteriaEntry[] }) {
         </div>
         <RequirementsEditor requirements={requirements} onRequirements={setRequirements} />
         {made.isError ? (
-          <Notice tone="bad" title="The criteria were not stored.">
+          <Notice tone="bad" title={say('The criteria were not stored.')}>
             {made.error.message}
           </Notice>
         ) : null}
-        {made.isSuccess ? <p role="status">Stored as a new version.</p> : null}
+        {made.isSuccess ? <p role="status">{say('Stored as a new version.')}</p> : null}
         <div className={styles.go}>
           <span>{wrong}</span>
           <Button look="solid" disabled={wrong !== '' || made.isPending} onClick={() => made.mutate()}>
-            Store as a new version
+            {say('Store as a new version')}
           </Button>
         </div>
       </div>
@@ -112,14 +117,14 @@ function Versions({ of }: { readonly of: CriteriaEntry }) {
   const [newest, ...older] = [...of.versions].reverse();
   if (!newest) return null;
   const line = ({ version, made_utc_us, made_by, reason }: CriteriaVersion) =>
-    `Version ${formatCount(version)}, ${formatDateTime(made_utc_us)} by ${made_by}${reason === '' ? '' : `: ${reason}`}`;
+    `${say('Version {version}, {time} by {name}', { version: formatCount(version), time: formatDateTime(made_utc_us), name: made_by })}${reason === '' ? '' : `: ${reason}`}`;
   return (
     <div className={styles.stack}>
       <Requirements of={newest.requirements} />
       <p className={styles.muted}>{line(newest)}</p>
       {older.length === 0 ? null : (
         <details>
-          <summary>Earlier versions</summary>
+          <summary>{say('Earlier versions')}</summary>
           {older.map((one) => (
             <div key={one.version}>
               <p className={styles.muted}>{line(one)}</p>
@@ -140,39 +145,41 @@ export function CriteriaPage() {
   return (
     <Frame
       at="/criteria"
-      lead="Requirements for passing. A trainee who has begun keeps the version that was valid then; a new version applies to those who begin later."
+      lead={say(
+        'Requirements for passing. A trainee who has begun keeps the version that was valid then; a new version applies to those who begin later.',
+      )}
     >
       {query.isError ? (
-        <Notice tone="bad" title="The criteria could not be loaded." onRetry={() => void query.refetch()}>
+        <Notice tone="bad" title={say('The criteria could not be loaded.')} onRetry={() => void query.refetch()}>
           {query.error.message}
         </Notice>
       ) : null}
-      <Card title="Criteria">
+      <Card title={say('Criteria')}>
         <div className={styles.stack}>
           {query.data && !stated ? (
-            <Notice title="Default criteria, where none are set:">
+            <Notice title={say('Default criteria, where none are set:')}>
               <Requirements of={query.data.usual} />
             </Notice>
           ) : null}
           <DataTable<CriteriaEntry>
             address=""
-            caption="Criteria"
+            caption={say('Criteria')}
             minWidth={640}
             rows={entries}
             keyOf={({ kind, subject }) => `${kind} ${subject}`}
-            empty="No criteria stated yet."
-            filter={{ label: 'Filter by case or assignment', text: nameOf }}
+            empty={say('No criteria stated yet.')}
+            filter={{ label: say('Filter by case or assignment'), text: nameOf }}
             columns={[
-              { name: 'Of', by: nameOf, cell: nameOf },
-              { name: 'Kind', by: ({ kind }) => kind, cell: ({ kind }) => <Badge>{kKindNames[kind]}</Badge> },
-              { name: 'Passing', cell: (one) => <Versions of={one} /> },
+              { name: say('Of'), by: nameOf, cell: nameOf },
+              { name: say('Kind'), by: ({ kind }) => kind, cell: ({ kind }) => <Badge>{say(kKindNames[kind])}</Badge> },
+              { name: say('Passing'), cell: (one) => <Versions of={one} /> },
               {
-                name: 'Who has passed',
+                name: say('Who has passed'),
                 cell: ({ kind, subject }) =>
                   kind === 'programme' ? (
-                    <Link href="/trainees">Trainees</Link>
+                    <Link href="/trainees">{say('Trainees')}</Link>
                   ) : (
-                    <Link href={`/criteria/${kind}/${subject}`}>Who has passed</Link>
+                    <Link href={`/criteria/${kind}/${subject}`}>{say('Who has passed')}</Link>
                   ),
               },
             ]}

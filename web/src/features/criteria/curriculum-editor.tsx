@@ -9,6 +9,7 @@ import {
   type Curriculum,
   type CurriculumVersion,
 } from '@/api';
+import { say } from '@/language';
 import { Button, Card, Field, Notice, Skeleton, useTitle } from '@/ui';
 import { formatCount } from '@/units';
 import styles from './criteria.module.css';
@@ -36,7 +37,7 @@ function useChoices(there: readonly CaseChoice[]): readonly CaseChoice[] | undef
     ...scenarios.scenarios
       .filter(({ published }) => published)
       .map(({ id, name }) => ({ key: `case ${id}`, title: name })),
-    ...scenarios.tuned.map(({ kind, name }) => ({ key: `tuned ${kind}`, title: `${name} (built-in)` })),
+    ...scenarios.tuned.map(({ kind, name }) => ({ key: `tuned ${kind}`, title: say('{name} (built-in)', { name }) })),
   ];
   const keys = new Set(known.map(({ key }) => key));
   return [...known, ...there.filter(({ key }) => !keys.has(key))];
@@ -61,30 +62,30 @@ function Step({
   const wrong = stepProblem(step);
   return (
     <Card
-      title={`Step ${formatCount(place + 1)}${step.name.trim() === '' ? '' : `: ${step.name}`}`}
+      title={`${say('Step {number}', { number: formatCount(place + 1) })}${step.name.trim() === '' ? '' : `: ${step.name}`}`}
       aside={
-        <Button look="quiet" label={`Remove step ${formatCount(place + 1)}`} onClick={onRemove}>
-          Remove
+        <Button look="quiet" label={say('Remove step {number}', { number: formatCount(place + 1) })} onClick={onRemove}>
+          {say('Remove')}
         </Button>
       }
     >
       <div className={styles.stack}>
         <div className={styles.form}>
           <Field
-            label="Name, shown to trainees"
+            label={say('Name, shown to trainees')}
             value={step.name}
             maxLength={100}
             onChange={(event) => onStep({ name: event.target.value })}
           />
           <Field
-            label="Planned trials of each case"
+            label={say('Planned trials of each case')}
             inputMode="numeric"
             value={step.repeats}
             onChange={(event) => onStep({ repeats: event.target.value })}
           />
         </div>
         <fieldset className={styles.choices}>
-          <legend>Cases</legend>
+          <legend>{say('Cases')}</legend>
           {choices.map((one) => (
             <label key={one.key}>
               <input
@@ -102,7 +103,7 @@ function Step({
         </fieldset>
         {before.length === 0 ? null : (
           <fieldset className={styles.choices}>
-            <legend>Only after</legend>
+            <legend>{say('Only after')}</legend>
             {before.map(({ id, name }, i) => (
               <label key={id}>
                 <input
@@ -114,12 +115,12 @@ function Step({
                     })
                   }
                 />
-                {name.trim() === '' ? `Step ${formatCount(i + 1)}` : name}
+                {name.trim() === '' ? say('Step {number}', { number: formatCount(i + 1) }) : name}
               </label>
             ))}
           </fieldset>
         )}
-        <h3>Passed when</h3>
+        <h3>{say('Passed when')}</h3>
         <RequirementsEditor
           requirements={step.requirements}
           onRequirements={(requirements) => onStep({ requirements })}
@@ -158,24 +159,24 @@ function Editor({ id, of }: { readonly id: string | undefined; readonly of: Curr
       go(`/curricula/${id ?? newest}`);
     },
   });
-  const wrong = title.trim() === '' ? 'Enter a title.' : (steps.map(stepProblem).find((one) => one !== '') ?? '');
+  const wrong = title.trim() === '' ? say('Enter a title.') : (steps.map(stepProblem).find((one) => one !== '') ?? '');
   const change = (step: StepDraft, to: Partial<StepDraft>) =>
     setSteps(steps.map((one) => (one.id === step.id ? { ...one, ...to } : one)));
   return (
     <>
-      <Card title="Curriculum">
+      <Card title={say('Curriculum')}>
         <div className={styles.form}>
           <Field
-            label="Title"
+            label={say('Title')}
             value={title}
             maxLength={150}
             required
-            placeholder="Pedicle screws, year 1"
+            placeholder={say('Pedicle screws, year 1')}
             onChange={(event) => setTitle(event.target.value)}
           />
           {id === undefined ? null : (
             <Field
-              label="Reason of the change (optional)"
+              label={say('Reason of the change (optional)')}
               value={reason}
               maxLength={400}
               onChange={(event) => setReason(event.target.value)}
@@ -199,10 +200,10 @@ function Editor({ id, of }: { readonly id: string | undefined; readonly of: Curr
         ))
       )}
       <div className={styles.buttons}>
-        <Button onClick={() => setSteps([...steps, newStep(steps)])}>Add a step</Button>
+        <Button onClick={() => setSteps([...steps, newStep(steps)])}>{say('Add a step')}</Button>
       </div>
       {made.isError ? (
-        <Notice tone="bad" title="The curriculum was not stored.">
+        <Notice tone="bad" title={say('The curriculum was not stored.')}>
           {made.error.message}
         </Notice>
       ) : null}
@@ -213,7 +214,7 @@ function Editor({ id, of }: { readonly id: string | undefined; readonly of: Curr
           disabled={wrong !== '' || steps.length === 0 || made.isPending}
           onClick={() => made.mutate()}
         >
-          {id === undefined ? 'Make the curriculum' : 'Store as a new version'}
+          {id === undefined ? say('Make the curriculum') : say('Store as a new version')}
         </Button>
       </div>
     </>
@@ -225,24 +226,24 @@ export function CurriculumEditor({ id }: { readonly id?: string }) {
   const query = useQuery({ ...curriculaQuery, enabled: id !== undefined });
   const { metrics } = useMetrics();
   const of = query.data?.curricula.find((one) => one.id === id)?.versions.at(-1);
-  const heading = id === undefined ? 'New curriculum' : 'Change the curriculum';
+  const heading = id === undefined ? say('New curriculum') : say('Change the curriculum');
   useTitle(heading);
   const waits = (id !== undefined && query.data === undefined) || metrics.length === 0;
   return (
     <div className={styles.page}>
       <p>
-        <Link href={id === undefined ? '/curricula' : `/curricula/${id}`}>← Curricula</Link>
+        <Link href={id === undefined ? '/curricula' : `/curricula/${id}`}>← {say('Curricula')}</Link>
       </p>
       <div>
         <h1>{heading}</h1>
         {id === undefined ? null : (
           <p className={styles.lead}>
-            This makes a new version for trainees who begin later. A trainee who has begun keeps their version.
+            {say('This makes a new version for trainees who begin later. A trainee who has begun keeps their version.')}
           </p>
         )}
       </div>
       {query.isError ? (
-        <Notice tone="bad" title="The curriculum could not be loaded." onRetry={() => void query.refetch()}>
+        <Notice tone="bad" title={say('The curriculum could not be loaded.')} onRetry={() => void query.refetch()}>
           {query.error.message}
         </Notice>
       ) : waits ? (

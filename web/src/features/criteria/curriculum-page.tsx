@@ -11,6 +11,7 @@ import {
   type CurriculumVersion,
   type Release,
 } from '@/api';
+import { say } from '@/language';
 import { AskDialog, Badge, Button, Card, DataTable, Notice, Select, Skeleton, useTitle } from '@/ui';
 import { formatCount, formatDate, formatDateTime, isoDateTime } from '@/units';
 import styles from './criteria.module.css';
@@ -24,9 +25,13 @@ function Steps({ of }: { readonly of: CurriculumVersion }) {
         <li key={step.id}>
           <h3>{step.name}</h3>
           <p className={styles.muted}>
-            {step.after.length === 0 ? 'Open from the start. ' : `After: ${step.after.map(nameOf).join(', ')}. `}
-            {formatCount(step.repeats)} planned {step.repeats === 1 ? 'trial' : 'trials'} of each of{' '}
-            {step.cases.map(({ title }) => title).join(', ')}.
+            {step.after.length === 0
+              ? say('Open from the start.')
+              : say('After: {steps}.', { steps: step.after.map(nameOf).join(', ') })}{' '}
+            {say('{repeats, plural, one {# planned trial} other {# planned trials}} of each of {cases}.', {
+              repeats: step.repeats,
+              cases: step.cases.map(({ title }) => title).join(', '),
+            })}
           </p>
           <Requirements of={step.requirements} />
         </li>
@@ -71,38 +76,39 @@ function Give({ id }: { readonly id: string }) {
     },
   });
   return (
-    <Card title="Give to a cohort">
+    <Card title={say('Give to a cohort')}>
       <div className={styles.stack}>
         <Select
-          label="Cohort"
+          label={say('Cohort')}
           value={cohort}
           onChange={(event) => setCohort(event.target.value)}
           options={[
-            { value: '', text: 'Choose a cohort' },
+            { value: '', text: say('Choose a cohort') },
             ...cohorts.map(({ id: value, name }) => ({ value, text: name })),
           ]}
         />
         <Select
-          label="Trainees see their results"
+          label={say('Trainees see their results')}
           value={release}
           onChange={(event) => setRelease(event.target.value as Release)}
           options={[
-            { value: 'at_once', text: 'as soon as a trial is uploaded' },
-            { value: 'held', text: 'not until they are released' },
+            { value: 'at_once', text: say('as soon as a trial is uploaded') },
+            { value: 'held', text: say('not until they are released') },
           ]}
         />
         <p className={styles.muted}>
-          Makes an assignment of each step. A trainee who joins the cohort later gets the newest version that the cohort
-          was given.
+          {say(
+            'Makes an assignment of each step. A trainee who joins the cohort later gets the newest version that the cohort was given.',
+          )}
         </p>
         {given.isError ? (
-          <Notice tone="bad" title="The curriculum was not given.">
+          <Notice tone="bad" title={say('The curriculum was not given.')}>
             {given.error.message}
           </Notice>
         ) : null}
-        {given.isSuccess ? <p role="status">Given to the cohort.</p> : null}
+        {given.isSuccess ? <p role="status">{say('Given to the cohort.')}</p> : null}
         <Button disabled={cohort === '' || given.isPending} onClick={() => given.mutate()}>
-          Give
+          {say('Give')}
         </Button>
       </div>
     </Card>
@@ -115,35 +121,40 @@ function People({ id, people }: { readonly id: string; readonly people: readonly
   const passed = (one: CurriculumPerson) => one.steps.filter(({ state }) => state === 'passed').length;
   return (
     <Card
-      title="People"
+      title={say('People')}
       aside={
         people && people.length > 0 ? (
-          <Button onClick={() => save('curriculum.csv', csvOf(people))}>CSV</Button>
+          <Button onClick={() => save('curriculum.csv', csvOf(people))}>{say('CSV')}</Button>
         ) : undefined
       }
     >
       <DataTable<CurriculumPerson>
         address=""
-        caption="People"
+        caption={say('People')}
         minWidth={680}
         rows={people}
         keyOf={(one) => `${one.account_id} ${one.version}`}
-        empty="Nobody has this curriculum yet."
-        filter={{ label: 'Filter by name', text: ({ name }) => name }}
+        empty={say('Nobody has this curriculum yet.')}
+        filter={{ label: say('Filter by name'), text: ({ name }) => name }}
         columns={[
           {
-            name: 'Name',
+            name: say('Name'),
             by: ({ name }) => name,
             cell: ({ name, simulated }) => (
               <>
                 <Link href={`/trainees/${encodeURIComponent(name)}`}>{name}</Link>{' '}
-                {simulated ? <Badge tone="warn">simulated</Badge> : null}
+                {simulated ? <Badge tone="warn">{say('simulated')}</Badge> : null}
               </>
             ),
           },
-          { name: 'Version', by: ({ version }) => version, cell: ({ version }) => formatCount(version), number: true },
           {
-            name: 'Steps',
+            name: say('Version'),
+            by: ({ version }) => version,
+            cell: ({ version }) => formatCount(version),
+            number: true,
+          },
+          {
+            name: say('Steps'),
             by: passed,
             cell: (person) => (
               <ul className={styles.states}>
@@ -151,15 +162,15 @@ function People({ id, people }: { readonly id: string; readonly people: readonly
                   <li key={step.id}>
                     {step.name} <StepState state={step.state} />{' '}
                     <span className={styles.muted}>
-                      {formatCount(step.done)} of {formatCount(step.planned)}
+                      {say('{done} of {planned}', { done: formatCount(step.done), planned: formatCount(step.planned) })}
                     </span>
                     {step.state === 'used_up' ? (
                       <Button
                         look="quiet"
-                        label={`Assign ${step.name} again to ${person.name}`}
+                        label={say('Assign {step} again to {name}', { step: step.name, name: person.name })}
                         onClick={() => setAgain({ person, step: step.id, name: step.name })}
                       >
-                        Assign again…
+                        {say('Assign again…')}
                       </Button>
                     ) : null}
                   </li>
@@ -167,14 +178,14 @@ function People({ id, people }: { readonly id: string; readonly people: readonly
               </ul>
             ),
           },
-          { name: 'Next case', by: ({ next }) => next?.case, cell: ({ next }) => next?.case ?? '–' },
+          { name: say('Next case'), by: ({ next }) => next?.case, cell: ({ next }) => next?.case ?? '–' },
           {
-            name: 'Certificate',
+            name: say('Certificate'),
             by: ({ passed_utc_us }) => passed_utc_us,
             cell: (one) =>
               one.passed && one.passed_utc_us !== null ? (
                 <Link href={`/certificates/${one.account_id}/${one.curriculum_id}`}>
-                  passed {formatDate(one.passed_utc_us)}
+                  {say('passed {date}', { date: formatDate(one.passed_utc_us) })}
                 </Link>
               ) : (
                 '–'
@@ -184,8 +195,8 @@ function People({ id, people }: { readonly id: string; readonly people: readonly
       />
       {again ? (
         <AskDialog
-          title={`Assign ${again.name} again to ${again.person.name}?`}
-          action="Assign again"
+          title={say('Assign {step} again to {name}?', { step: again.name, name: again.person.name })}
+          action={say('Assign again')}
           onClose={() => setAgain(null)}
           onAction={() =>
             repeatStep(id, again.person.account_id, again.step).then((next) =>
@@ -193,7 +204,7 @@ function People({ id, people }: { readonly id: string; readonly people: readonly
             )
           }
         >
-          <p>The planned trials of the step are assigned once more. All trials of the step count together.</p>
+          <p>{say('The planned trials of the step are assigned once more. All trials of the step count together.')}</p>
         </AskDialog>
       ) : null}
     </Card>
@@ -206,17 +217,17 @@ export function CurriculumPage({ id }: { readonly id: string }) {
   const progress = useQuery(curriculumProgressQuery(id));
   const one = query.data?.curricula.find((other) => other.id === id);
   const newest = one?.versions.at(-1);
-  useTitle(newest?.title ?? 'Curriculum');
+  useTitle(newest?.title ?? say('Curriculum'));
   const failed = query.error ?? progress.error;
   return (
     <div className={styles.page}>
       <p>
-        <Link href="/curricula">← Curricula</Link>
+        <Link href="/curricula">← {say('Curricula')}</Link>
       </p>
       {failed ? (
         <Notice
           tone="bad"
-          title="The curriculum could not be loaded."
+          title={say('The curriculum could not be loaded.')}
           onRetry={() => {
             void query.refetch();
             void progress.refetch();
@@ -225,7 +236,7 @@ export function CurriculumPage({ id }: { readonly id: string }) {
           {failed.message}
         </Notice>
       ) : null}
-      {query.data && !one ? <Notice tone="bad" title="There is no such curriculum." /> : null}
+      {query.data && !one ? <Notice tone="bad" title={say('There is no such curriculum.')} /> : null}
       {query.isPending ? <Skeleton height="320px" /> : null}
       {newest ? (
         <>
@@ -233,17 +244,21 @@ export function CurriculumPage({ id }: { readonly id: string }) {
             <div>
               <h1>{newest.title}</h1>
               <p className={styles.lead}>
-                Version {formatCount(newest.version)}, {formatDateTime(newest.made_utc_us)} by {newest.made_by}
+                {say('Version {version}, {time} by {name}', {
+                  version: formatCount(newest.version),
+                  time: formatDateTime(newest.made_utc_us),
+                  name: newest.made_by,
+                })}
                 {newest.reason === '' ? '' : `: ${newest.reason}`}
               </p>
             </div>
             <Link href={`/curricula/${id}/edit`} className={styles.solid}>
-              Change…
+              {say('Change…')}
             </Link>
           </div>
           <People id={id} people={progress.data?.people} />
           <div className={styles.two}>
-            <Card title="Steps">
+            <Card title={say('Steps')}>
               <Steps of={newest} />
             </Card>
             <Give id={id} />

@@ -1,6 +1,7 @@
 /** Criteria and a curriculum as they are being written, in the units of a table. Pure. */
 import type { NewCurriculum, NewRequirement, Requirement } from '@/api';
 import { criteriaOf } from '@/api';
+import { say } from '@/language';
 import { plainNumber, typedIn } from '@/units';
 
 export type Kind = Requirement['kind'];
@@ -69,21 +70,21 @@ const isShare = (typed: string) => isNumber(typed) && Number(typed) > 0 && Numbe
 export function requirementProblem(of: RequirementDraft): string {
   switch (of.kind) {
     case 'metric':
-      if (of.metric === '') return 'Choose a metric.';
-      if (!isNumber(of.bound)) return 'Enter the bound as a number.';
-      if (!isCount(of.times)) return 'Enter how many trials must keep the bound.';
-      if (of.last !== '' && !isCount(of.last)) return 'Enter of how many trials, or leave it empty for all.';
+      if (of.metric === '') return say('Choose a metric.');
+      if (!isNumber(of.bound)) return say('Enter the bound as a number.');
+      if (!isCount(of.times)) return say('Enter how many trials must keep the bound.');
+      if (of.last !== '' && !isCount(of.last)) return say('Enter of how many trials, or leave it empty for all.');
       if (of.last !== '' && Number(of.last) < Number(of.times))
-        return 'More trials must keep the bound than are looked at.';
+        return say('More trials must keep the bound than are looked at.');
       return '';
     case 'recognition':
-      if (!isShare(of.share) || !isShare(of.level)) return 'Enter percentages between 0 and 100.';
-      return of.last === '' || isCount(of.last) ? '' : 'Enter of how many answers, or leave it empty for all.';
+      if (!isShare(of.share) || !isShare(of.level)) return say('Enter percentages between 0 and 100.');
+      return of.last === '' || isCount(of.last) ? '' : say('Enter of how many answers, or leave it empty for all.');
     case 'lc_cusum':
-      if (!isShare(of.adequate) || !isShare(of.inadequate)) return 'Enter percentages between 0 and 100.';
+      if (!isShare(of.adequate) || !isShare(of.inadequate)) return say('Enter percentages between 0 and 100.');
       return Number(of.adequate) < Number(of.inadequate)
         ? ''
-        : 'The acceptable failure rate must be below the unacceptable one.';
+        : say('The acceptable failure rate must be below the unacceptable one.');
   }
 }
 
@@ -151,10 +152,10 @@ export const withoutStep = (steps: readonly StepDraft[], id: string): readonly S
     .map((step) => ({ ...step, after: step.after.filter((other) => other !== id) }));
 
 export function stepProblem(step: StepDraft): string {
-  if (step.name.trim() === '') return 'Name the step.';
-  if (step.cases.length === 0) return 'Choose at least one case.';
-  if (!isCount(step.repeats) || Number(step.repeats) > 20) return 'Enter 1 to 20 trials of each case.';
-  if (step.requirements.length === 0) return 'Add the criteria of the step.';
+  if (step.name.trim() === '') return say('Name the step.');
+  if (step.cases.length === 0) return say('Choose at least one case.');
+  if (!isCount(step.repeats) || Number(step.repeats) > 20) return say('Enter 1 to 20 trials of each case.');
+  if (step.requirements.length === 0) return say('Add the criteria of the step.');
   return step.requirements.map(requirementProblem).find((wrong) => wrong !== '') ?? '';
 }
 

@@ -2,15 +2,16 @@ import { useQuery } from '@tanstack/react-query';
 import { useState } from 'react';
 import { cohortsQuery, expertBoundQuery, type BoundMethod, type ExpertBound as Found } from '@/api';
 import { Plane } from '@/charts';
+import { marked, say } from '@/language';
 import { Button, Field, Notice, Select, useSettled } from '@/ui';
 import { formatCount, formatFigure, formatShare, plainNumber, typedIn } from '@/units';
 import styles from './criteria.module.css';
 import type { RequirementDraft } from './draft';
 
 const kMethods: readonly { readonly value: BoundMethod; readonly text: string }[] = [
-  { value: 'mean_sd', text: 'Mean of the experts ± standard deviations' },
-  { value: 'percentile', text: 'Percentile of the experts' },
-  { value: 'youden', text: 'Cut between experts and novices (ROC, Youden)' },
+  { value: 'mean_sd', text: marked('Mean of the experts ± standard deviations') },
+  { value: 'percentile', text: marked('Percentile of the experts') },
+  { value: 'youden', text: marked('Cut between experts and novices (ROC, Youden)') },
 ];
 
 /** Places of dots that would lie on each other: one above the other, in columns of the picture's width. */
@@ -29,8 +30,8 @@ function stacked(values: readonly number[], from: number, to: number): readonly 
 function Distributions({ of, unit, metric }: { readonly of: Found; readonly unit: string; readonly metric: string }) {
   const { unit: shown, perSi } = typedIn(unit);
   const groups = [
-    { name: 'experts', group: of.experts, className: styles.experts },
-    { name: 'novices', group: of.novices, className: styles.novices },
+    { name: say('experts'), group: of.experts, className: styles.experts },
+    { name: say('novices'), group: of.novices, className: styles.novices },
   ].filter(({ group }) => group.values.length > 0);
   const all = [...groups.flatMap(({ group }) => group.values), of.bound].map((value) => value * perSi);
   const least = Math.min(...all),
@@ -50,12 +51,12 @@ function Distributions({ of, unit, metric }: { readonly of: Found; readonly unit
   return (
     <>
       <Plane
-        across={{ title: shown === '' ? metric : `${metric} in ${shown}`, from, to }}
+        across={{ title: shown === '' ? metric : say('{metric} in {unit}', { metric, unit: shown }), from, to }}
         up={{ title: '', from: 0, to: groups.length, ticks: [] }}
         height_px={200}
         summary={`${groups
-          .map(({ name, group }) => `${formatCount(group.values.length)} trials of ${name}`)
-          .join(' and ')}; the bound is ${formatFigure(of.bound, unit)}.`}
+          .map(({ name, group }) => say('{count} trials of {name}', { count: formatCount(group.values.length), name }))
+          .join(', ')}; ${say('the bound is {bound}.', { bound: formatFigure(of.bound, unit) })}`}
         data={{
           name: `bound of ${metric}`,
           columns: ['group', shown === '' ? 'value' : `value_${shown}`],
@@ -93,7 +94,9 @@ function Distributions({ of, unit, metric }: { readonly of: Found; readonly unit
           </>
         )}
       </Plane>
-      {of.experts.simulated || of.novices.simulated ? <p className={styles.muted}>Some trials are simulated.</p> : null}
+      {of.experts.simulated || of.novices.simulated ? (
+        <p className={styles.muted}>{say('Some trials are simulated.')}</p>
+      ) : null}
     </>
   );
 }
@@ -139,29 +142,29 @@ export function ExpertBound({
     <div className={styles.fromExperts}>
       <div className={styles.form}>
         <Select
-          label="Experts"
+          label={say('Experts')}
           value={experts}
           onChange={(event) => setExperts(event.target.value)}
-          options={[{ value: '', text: 'Choose a cohort' }, ...choices]}
+          options={[{ value: '', text: say('Choose a cohort') }, ...choices]}
         />
         <Select
-          label="Novices"
+          label={say('Novices')}
           value={novices}
           onChange={(event) => setNovices(event.target.value)}
-          options={[{ value: '', text: method === 'youden' ? 'Choose a cohort' : 'none' }, ...choices]}
+          options={[{ value: '', text: method === 'youden' ? say('Choose a cohort') : 'none' }, ...choices]}
         />
         <Select
-          label="Method"
+          label={say('Method')}
           value={method}
           onChange={(event) => {
             const next = kMethods.find((one) => one.value === event.target.value);
             if (next) take(next.value);
           }}
-          options={kMethods}
+          options={kMethods.map(({ value, text }) => ({ value, text: say(text) }))}
         />
         {method === 'youden' ? null : (
           <Field
-            label={method === 'mean_sd' ? 'Standard deviations' : 'Percentile, %'}
+            label={method === 'mean_sd' ? say('Standard deviations') : say('Percentile, %')}
             inputMode="decimal"
             value={number}
             onChange={(event) => setNumber(event.target.value)}
@@ -169,7 +172,7 @@ export function ExpertBound({
         )}
       </div>
       {found.isError ? (
-        <Notice tone="bad" title="No bound could be computed.">
+        <Notice tone="bad" title={say('No bound could be computed.')}>
           {found.error.message}
         </Notice>
       ) : null}
@@ -179,12 +182,21 @@ export function ExpertBound({
           <p className={styles.muted}>
             {found.data.area === null
               ? ''
-              : `Area under the ROC curve ${formatFigure(found.data.area)}; ${formatShare(found.data.sensitivity ?? (0 as never))} of the experts' trials pass, ${formatShare(found.data.specificity ?? (0 as never))} of the novices' do not. `}
-            {found.data.experts.people === 1 ? 'One expert' : `${formatCount(found.data.experts.people)} experts`}:
-            trials of one person are alike, so that few people make an uncertain bound.
+              : `${say(
+                  'Area under the ROC curve {area}; {sensitivity} of the experts’ trials pass, {specificity} of the novices’ do not.',
+                  {
+                    area: formatFigure(found.data.area),
+                    sensitivity: formatShare(found.data.sensitivity ?? (0 as never)),
+                    specificity: formatShare(found.data.specificity ?? (0 as never)),
+                  },
+                )} `}
+            {say(
+              '{people, plural, one {One expert} other {# experts}}: trials of one person are alike, so that few people make an uncertain bound.',
+              { people: found.data.experts.people },
+            )}
           </p>
           <Button onClick={() => onBound(plainNumber(rounded(found.data.bound * perSi)), found.data.basis)}>
-            Use {formatFigure(found.data.bound, unit)} as the bound
+            {say('Use {bound} as the bound', { bound: formatFigure(found.data.bound, unit) })}
           </Button>
         </>
       ) : null}

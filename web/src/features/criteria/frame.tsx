@@ -1,9 +1,10 @@
 import type { ReactNode } from 'react';
+import { marked, say } from '@/language';
 import { TabbedPage } from '@/ui';
 
 const kTabs = [
-  { to: '/curricula', name: 'Curricula' },
-  { to: '/criteria', name: 'Criteria' },
+  { to: '/curricula', name: marked('Curricula') },
+  { to: '/criteria', name: marked('Criteria') },
 ] as const;
 
 /** What the lists of curricula and criteria have in common. */
@@ -16,7 +17,7 @@ export const Frame = ({
   readonly lead: string;
   readonly children: ReactNode;
 }) => (
-  <TabbedPage tabs={kTabs} at={at} label="Passing" lead={lead}>
+  <TabbedPage tabs={kTabs} at={at} label={say('Passing')} lead={lead}>
     {children}
   </TabbedPage>
 );

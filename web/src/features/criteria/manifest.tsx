@@ -1,5 +1,6 @@
 /** Pages of what passing is: criteria, curricula, who has passed, certificates. */
 import { lazy } from 'react';
+import { marked } from '@/language';
 import type { Feature } from '@/ui';
 
 const index = () => import('./index');
@@ -13,8 +14,8 @@ const PassingPage = lazy(() => index().then(({ PassingPage: page }) => ({ defaul
 
 export const feature: Feature = {
   menu: [
-    { to: '/curricula', name: 'Curricula', roles: ['director', 'faculty'], order: 55 },
-    { to: '/curriculum', name: 'My curriculum', roles: ['trainee'], order: 15 },
+    { to: '/curricula', name: marked('Curricula'), roles: ['director', 'faculty'], order: 55 },
+    { to: '/curriculum', name: marked('My curriculum'), roles: ['trainee'], order: 15 },
   ],
   pages: [
     { path: '/criteria', show: () => <CriteriaPage /> },

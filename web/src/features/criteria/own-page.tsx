@@ -1,6 +1,7 @@
 import { useQuery } from '@tanstack/react-query';
 import { Link } from 'wouter';
 import { ownCurriculaQuery, sessionQuery, type CurriculumPerson } from '@/api';
+import { say, Sentence } from '@/language';
 import { Card, Notice, Skeleton, useTitle } from '@/ui';
 import { formatCount } from '@/units';
 import styles from './criteria.module.css';
@@ -13,11 +14,16 @@ function Mine({ of }: { readonly of: CurriculumPerson }) {
       <div className={styles.stack}>
         {of.passed ? (
           <p>
-            You have passed. <Link href={`/certificates/${of.account_id}/${of.curriculum_id}`}>Certificate</Link>
+            {say('You have passed.')}{' '}
+            <Link href={`/certificates/${of.account_id}/${of.curriculum_id}`}>{say('Certificate')}</Link>
           </p>
         ) : next ? (
           <p>
-            Your next step: <strong>{next.name}</strong>. A station offers its trials after badge and PIN.
+            <Sentence
+              text="Your next step: <strong>{name}</strong>. A station offers its trials after badge and PIN."
+              values={{ name: next.name }}
+              parts={{ strong: (words) => <strong>{words}</strong> }}
+            />
           </p>
         ) : null}
         <ol className={styles.steps}>
@@ -27,7 +33,10 @@ function Mine({ of }: { readonly of: CurriculumPerson }) {
                 {step.name} <StepState state={step.state} />
               </h3>
               <p className={styles.muted}>
-                {formatCount(step.done)} of {formatCount(step.planned)} planned trials done
+                {say('{done} of {planned} planned trials done', {
+                  done: formatCount(step.done),
+                  planned: formatCount(step.planned),
+                })}
               </p>
               <Judged of={step.requirements} />
             </li>
@@ -40,24 +49,24 @@ function Mine({ of }: { readonly of: CurriculumPerson }) {
 
 /** A trainee's own curricula. */
 export function OwnCurriculaPage() {
-  useTitle('My curriculum');
+  useTitle(say('My curriculum'));
   const session = useQuery({ ...sessionQuery, enabled: false }).data;
   const query = useQuery({ ...ownCurriculaQuery(session?.id ?? ''), enabled: session?.id !== undefined });
   return (
     <div className={styles.page}>
       <div>
-        <h1>My curriculum</h1>
-        <p className={styles.lead}>The steps of your training, and the criteria of each.</p>
+        <h1>{say('My curriculum')}</h1>
+        <p className={styles.lead}>{say('The steps of your training, and the criteria of each.')}</p>
       </div>
       {query.isError ? (
-        <Notice tone="bad" title="Your curriculum could not be loaded." onRetry={() => void query.refetch()}>
+        <Notice tone="bad" title={say('Your curriculum could not be loaded.')} onRetry={() => void query.refetch()}>
           {query.error.message}
         </Notice>
       ) : null}
       {query.isPending ? <Skeleton height="240px" /> : null}
       {query.data?.people.length === 0 ? (
-        <Notice title="No curriculum yet.">
-          Your faculty has not given you a curriculum. Your assignments are under “My work”.
+        <Notice title={say('No curriculum yet.')}>
+          {say('Your faculty has not given you a curriculum. Your assignments are under “My work”.')}
         </Notice>
       ) : null}
       {query.data?.people.map((one) => (

@@ -1,5 +1,6 @@
 import { useQuery } from '@tanstack/react-query';
 import { metricsQuery, type MetricFacts, type Requirement, type StepProgress } from '@/api';
+import { marked, say } from '@/language';
 import { Badge, type Tone } from '@/ui';
 import styles from './criteria.module.css';
 
@@ -36,7 +37,7 @@ export function Judged({ of }: { readonly of: StepProgress['requirements'] }) {
               : <strong>{found}</strong>
             </>
           )}
-          <span className="hidden-visually">{met ? ' (met)' : ' (not met)'}</span>
+          <span className="hidden-visually"> {met ? say('(met)') : say('(not met)')}</span>
         </li>
       ))}
     </ul>
@@ -44,13 +45,13 @@ export function Judged({ of }: { readonly of: StepProgress['requirements'] }) {
 }
 
 const kStates: Record<StepProgress['state'], { readonly tone: Tone; readonly text: string }> = {
-  passed: { tone: 'good', text: 'passed' },
-  open: { tone: 'accent', text: 'open' },
-  waiting: { tone: 'neutral', text: 'waiting' },
-  used_up: { tone: 'warn', text: 'all trials done, not passed' },
-  held: { tone: 'neutral', text: 'not released' },
+  passed: { tone: 'good', text: marked('passed') },
+  open: { tone: 'accent', text: marked('open') },
+  waiting: { tone: 'neutral', text: marked('waiting') },
+  used_up: { tone: 'warn', text: marked('all trials done, not passed') },
+  held: { tone: 'neutral', text: marked('not released') },
 };
-export const stateText = (state: StepProgress['state']) => kStates[state].text;
+export const stateText = (state: StepProgress['state']) => say(kStates[state].text);
 export const StepState = ({ state }: { readonly state: StepProgress['state'] }) => (
-  <Badge tone={kStates[state].tone}>{kStates[state].text}</Badge>
+  <Badge tone={kStates[state].tone}>{say(kStates[state].text)}</Badge>
 );

@@ -1,4 +1,5 @@
 import { useState } from 'react';
+import { marked, say } from '@/language';
 import { Button, Field, Select } from '@/ui';
 import { typedIn } from '@/units';
 import styles from './criteria.module.css';
@@ -18,37 +19,37 @@ function MetricFields({ draft, change }: { readonly draft: RequirementDraft; rea
     <>
       <div className={styles.form}>
         <Select
-          label="Metric"
+          label={say('Metric')}
           value={draft.metric}
           onChange={(event) => change({ metric: event.target.value, bound: '', basis: '' })}
           options={[
-            { value: '', text: 'Choose a metric' },
+            { value: '', text: say('Choose a metric') },
             ...metrics.map(({ id, label: text }) => ({ value: id, text })),
           ]}
         />
         <Select
-          label="Passes"
+          label={say('Passes')}
           value={draft.side}
           onChange={(event) => change({ side: event.target.value === 'at_least' ? 'at_least' : 'at_most' })}
           options={[
-            { value: 'at_most', text: 'at most' },
-            { value: 'at_least', text: 'at least' },
+            { value: 'at_most', text: say('at most') },
+            { value: 'at_least', text: say('at least') },
           ]}
         />
         <Field
-          label={shown === '' ? 'Bound' : `Bound, ${shown}`}
+          label={shown === '' ? say('Bound') : say('Bound, {shown}', { shown })}
           inputMode="decimal"
           value={draft.bound}
           onChange={(event) => change({ bound: event.target.value, basis: '' })}
         />
         <Field
-          label="Trials that must meet it"
+          label={say('Trials that must meet it')}
           inputMode="numeric"
           value={draft.times}
           onChange={(event) => change({ times: event.target.value })}
         />
         <Field
-          label="Among the last trials (empty: all)"
+          label={say('Among the last trials (empty: all)')}
           inputMode="numeric"
           value={draft.last}
           onChange={(event) => change({ last: event.target.value })}
@@ -57,7 +58,7 @@ function MetricFields({ draft, change }: { readonly draft: RequirementDraft; rea
       {draft.basis === '' ? null : <p className={styles.basis}>{draft.basis}</p>}
       {draft.metric === '' ? null : (
         <Button look="quiet" onClick={() => setAsking(!asking)}>
-          {asking ? 'Close experts’ trials' : 'Take the bound from experts’ trials…'}
+          {asking ? say('Close experts’ trials') : say('Take the bound from experts’ trials…')}
         </Button>
       )}
       {asking ? (
@@ -80,19 +81,19 @@ function RecognitionFields({ draft, change }: { readonly draft: RequirementDraft
   return (
     <div className={styles.form}>
       <Field
-        label="Correct answers at least, %"
+        label={say('Correct answers at least, %')}
         inputMode="decimal"
         value={draft.share}
         onChange={(event) => change({ share: event.target.value })}
       />
       <Field
-        label="Confidence level of the interval, %"
+        label={say('Confidence level of the interval, %')}
         inputMode="decimal"
         value={draft.level}
         onChange={(event) => change({ level: event.target.value })}
       />
       <Field
-        label="Among the last answers (empty: all)"
+        label={say('Among the last answers (empty: all)')}
         inputMode="numeric"
         value={draft.last}
         onChange={(event) => change({ last: event.target.value })}
@@ -105,13 +106,13 @@ function RateFields({ draft, change }: { readonly draft: RequirementDraft; reado
   return (
     <div className={styles.form}>
       <Field
-        label="Acceptable failure rate, %"
+        label={say('Acceptable failure rate, %')}
         inputMode="decimal"
         value={draft.adequate}
         onChange={(event) => change({ adequate: event.target.value })}
       />
       <Field
-        label="Unacceptable failure rate, %"
+        label={say('Unacceptable failure rate, %')}
         inputMode="decimal"
         value={draft.inadequate}
         onChange={(event) => change({ inadequate: event.target.value })}
@@ -121,9 +122,9 @@ function RateFields({ draft, change }: { readonly draft: RequirementDraft; reado
 }
 
 const kKinds: Record<Kind, string> = {
-  recognition: 'Correct answers',
-  metric: 'Bound on a metric',
-  lc_cusum: 'Competence by LC-CUSUM',
+  recognition: marked('Correct answers'),
+  metric: marked('Bound on a metric'),
+  lc_cusum: marked('Competence by LC-CUSUM'),
 };
 
 /** Requirements, all of which must be met at once. */
@@ -144,7 +145,7 @@ export function RequirementsEditor({
         return (
           <fieldset key={one.key} className={styles.requirement}>
             <legend>
-              {place + 1}. {kKinds[one.kind]}
+              {place + 1}. {say(kKinds[one.kind])}
             </legend>
             {one.kind === 'metric' ? <MetricFields {...props} /> : null}
             {one.kind === 'recognition' ? <RecognitionFields {...props} /> : null}
@@ -155,10 +156,10 @@ export function RequirementsEditor({
               </span>
               <Button
                 look="quiet"
-                label={`Remove requirement ${place + 1}`}
+                label={say('Remove requirement {number}', { number: place + 1 })}
                 onClick={() => onRequirements(requirements.filter(({ key }) => key !== one.key))}
               >
-                Remove
+                {say('Remove')}
               </Button>
             </div>
           </fieldset>
@@ -167,7 +168,7 @@ export function RequirementsEditor({
       <div className={styles.buttons}>
         {(Object.keys(kKinds) as Kind[]).map((kind) => (
           <Button key={kind} onClick={() => onRequirements([...requirements, newRequirement(kind)])}>
-            Add: {kKinds[kind]}
+            {say('Add: {kind}', { kind: say(kKinds[kind]) })}
           </Button>
         ))}
       </div>

@@ -2,6 +2,7 @@ import { useMutation, useQuery, useQueryClient } from '@tanstack/react-query';
 import { useId, useState, useSyncExternalStore, type FormEvent } from 'react';
 import { addComment, commentsQuery, removeComment, type TrialComment } from '@/api';
 import type { Cursor } from '@/charts';
+import { say } from '@/language';
 import { Button, Notice, Skeleton } from '@/ui';
 import { formatDateTime, formatTime, second } from '@/units';
 import styles from './debrief.module.css';
@@ -9,7 +10,7 @@ import type { Player } from './use-player';
 
 function CursorTime({ cursor }: { readonly cursor: Cursor }) {
   const now = useSyncExternalStore(cursor.subscribe, cursor.now) ?? 0;
-  return <>at the current time, {formatTime(second(now), 1)}</>;
+  return <>{say('at the current time, {now}', { now: formatTime(second(now), 1) })}</>;
 }
 
 function CommentForm({
@@ -40,17 +41,17 @@ function CommentForm({
   };
   return (
     <form className={styles.say} onSubmit={submit}>
-      <label htmlFor={id}>Comment</label>
+      <label htmlFor={id}>{say('Comment')}</label>
       <textarea id={id} rows={3} maxLength={4000} value={text} onChange={(event) => setText(event.target.value)} />
       <label className={styles.check}>
         <input type="checkbox" checked={moment} onChange={(event) => setMoment(event.target.checked)} />{' '}
         <CursorTime cursor={cursor} />
       </label>
       <Button look="solid" type="submit" disabled={text.trim() === '' || added.isPending}>
-        {added.isPending ? 'Saving…' : 'Add comment'}
+        {added.isPending ? say('Saving…') : say('Add comment')}
       </Button>
       {added.isError ? (
-        <Notice tone="bad" title="The comment was not saved.">
+        <Notice tone="bad" title={say('The comment was not saved.')}>
           {added.error.message}
         </Notice>
       ) : null}
@@ -92,7 +93,7 @@ export function Comments({
   });
   if (query.isError)
     return (
-      <Notice tone="bad" title="The comments could not be loaded." onRetry={() => void query.refetch()}>
+      <Notice tone="bad" title={say('The comments could not be loaded.')} onRetry={() => void query.refetch()}>
         {query.error.message}
       </Notice>
     );
@@ -101,7 +102,7 @@ export function Comments({
   return (
     <div className={styles.stack}>
       {comments.length === 0 ? (
-        <p className={styles.muted}>No comments yet.</p>
+        <p className={styles.muted}>{say('No comments yet.')}</p>
       ) : (
         <ul className={styles.comments} data-part="comments">
           {comments.map((one) => (
@@ -109,7 +110,7 @@ export function Comments({
               <p className={styles.said}>{one.text}</p>
               <p className={styles.by}>
                 {one.at_s === null ? (
-                  <span>whole trial</span>
+                  <span>{say('whole trial')}</span>
                 ) : (
                   <button type="button" className={styles.jump} onClick={() => player.seek(one.at_s ?? 0)}>
                     {formatTime(one.at_s, 1)}
@@ -121,11 +122,11 @@ export function Comments({
                 {one.own ? (
                   <Button
                     look="quiet"
-                    label={`Delete: ${one.text.slice(0, 40)}`}
+                    label={say('Delete: {text}', { text: one.text.slice(0, 40) })}
                     disabled={removed.isPending}
                     onClick={() => removed.mutate(one)}
                   >
-                    Delete
+                    {say('Delete')}
                   </Button>
                 ) : null}
               </p>
@@ -135,14 +136,14 @@ export function Comments({
       )}
       {gone ? (
         <p role="status">
-          Comment deleted.{' '}
+          {say('Comment deleted.')}{' '}
           <Button look="quiet" onClick={() => back.mutate(gone)} disabled={back.isPending}>
-            Undo
+            {say('Undo')}
           </Button>
         </p>
       ) : null}
       {removed.isError || back.isError ? (
-        <Notice tone="bad" title="The action failed.">
+        <Notice tone="bad" title={say('The action failed.')}>
           {(removed.error ?? back.error)?.message}
         </Notice>
       ) : null}

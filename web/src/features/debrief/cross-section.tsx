@@ -1,6 +1,7 @@
 /** The section across the tract where the channel reaches farthest beyond the cortex. */
 import * as v from 'valibot';
 import type { Trial } from '@/api';
+import { say } from '@/language';
 import { Card } from '@/ui';
 import { formatLength, metre } from '@/units';
 import styles from './rating.module.css';
@@ -75,7 +76,7 @@ function Section({ of, summary }: { readonly of: Worst; readonly summary: string
           strokeWidth={line * 2}
         />
         <text x={-reach + text / 2} y={reach - text * 0.9}>
-          {kScale_mm} mm
+          {`${kScale_mm} mm`}
         </text>
       </g>
     </svg>
@@ -88,22 +89,27 @@ export function BreachCard({ trial }: { readonly trial: Trial }) {
   const metric = trial.metrics.find(({ id }) => id === 'breach_class');
   if (!worst || !metric || metric.value === null) return null;
   const by = formatLength(metre(Math.abs(worst.beyond_m)), 1);
-  const summary = `Section across the tract at a depth of ${formatLength(metre(worst.depth_m), 0)}: the channel ${
-    worst.beyond_m > 0 ? `reaches ${by} beyond the cortex` : `stays ${by} within the cortex`
-  }.`;
+  const depth = formatLength(metre(worst.depth_m), 0);
+  const summary =
+    worst.beyond_m > 0
+      ? say('Section across the tract at a depth of {depth}: the channel reaches {by} beyond the cortex.', {
+          depth,
+          by,
+        })
+      : say('Section across the tract at a depth of {depth}: the channel stays {by} within the cortex.', { depth, by });
   return (
-    <Card title="Breach of the cortex">
+    <Card title={say('Breach of the cortex')}>
       <figure className={styles.section}>
         <Section of={worst} summary={summary} />
         <figcaption>
           <p>
-            <strong>Gertzbein-Robbins {metric.note}.</strong>
+            <strong>{say('Gertzbein-Robbins {note}.', { note: metric.note })}</strong>
           </p>
           <p>{summary}</p>
           <p className={styles.muted}>
-            The line goes from the outer face of the cortex, as the image shows the bone before the drilling, to the
-            farthest point of the channel’s surface. The circle is as large as the channel there. Classes: A no breach,
-            B below 2 mm, C 2 to below 4 mm, D 4 to below 6 mm, E 6 mm or more.
+            {say(
+              'The line goes from the outer face of the cortex, as the image shows the bone before the drilling, to the farthest point of the channel’s surface. The circle is as large as the channel there. Classes: A no breach, B below 2 mm, C 2 to below 4 mm, D 4 to below 6 mm, E 6 mm or more.',
+            )}
           </p>
         </figcaption>
       </figure>

@@ -15,7 +15,8 @@ import {
   personOf,
 } from '@/api';
 import { makeCursor, TractView, type Cursor } from '@/charts';
-import { Badge, Button, Card, Notice, Skeleton, usePalette, useTitle } from '@/ui';
+import { say, Sentence } from '@/language';
+import { Badge, Button, Card, Notice, Skeleton, usePalette, useTitle, wallName } from '@/ui';
 import { formatDateTime, formatDuration } from '@/units';
 import { byProgress, byTime, type Moments, type Way } from './align';
 import { Comments } from './comments';
@@ -92,12 +93,12 @@ function Picture({
         : null,
     [ghost],
   );
-  if (!trial.tract) return <p>The case of this trial is not on this server.</p>;
+  if (!trial.tract) return <p>{say('The case of this trial is not on this server.')}</p>;
   if (preview.isPending) return <Skeleton height="444px" />;
   return (
     <>
       {preview.isError ? (
-        <Notice tone="warn" title="The bone could not be loaded. The view shows the tract without it.">
+        <Notice tone="warn" title={say('The bone could not be loaded. The view shows the tract without it.')}>
           {preview.error.message}
         </Notice>
       ) : null}
@@ -108,7 +109,9 @@ function Picture({
         cursor={cursor}
         ghost={other}
         palette={palette}
-        summary="The tract with the surrounding bone and the path of the tip, coloured by force. A ball marks the current position; a second ball marks that of the example."
+        summary={say(
+          'The tract with the surrounding bone and the path of the tip, coloured by force. A ball marks the current position; a second ball marks that of the example.',
+        )}
         button={(label, text, press, pressed) => (
           <Button label={label} onClick={press} {...(pressed === undefined ? {} : { pressed })}>
             {text}
@@ -119,7 +122,8 @@ function Picture({
   );
 }
 
-const sides = (found: string | null, none: string) => (found === null ? none : `${found} breach`);
+const sides = (found: string | null, none: string) =>
+  found === null ? none : say('{wall} breach', { wall: wallName(found) });
 
 function Verdict({ trial }: { readonly trial: Trial }) {
   const { answer, truth, scenario } = trial;
@@ -127,31 +131,43 @@ function Verdict({ trial }: { readonly trial: Trial }) {
     ? answer.breach
       ? answer.wall
         ? sides(answer.wall, '')
-        : 'a breach'
-      : 'no breach'
-    : 'no answer';
+        : say('a breach')
+      : say('no breach')
+    : say('no answer');
   const was =
     trial.rig === 'probing'
       ? scenario
         ? scenario.walls.length > 0
-          ? 'a breach'
-          : 'no breach'
+          ? say('a breach')
+          : say('no breach')
         : null
       : truth
-        ? sides(truth.breached ?? null, 'no breach')
+        ? sides(truth.breached ?? null, say('no breach'))
         : null;
   const right = trial.metrics.find((metric) => metric.shown_as === 'correct_or_incorrect')?.value ?? null;
   return (
     <p className={styles.verdict}>
       <span>
-        Answer: <strong>{given}</strong>.
+        <Sentence
+          text="Answer: <strong>{given}</strong>."
+          values={{ given }}
+          parts={{ strong: (words) => <strong>{words}</strong> }}
+        />
       </span>{' '}
       {was === null ? null : (
         <span>
-          Truth: <strong>{was}</strong>.
+          <Sentence
+            text="Truth: <strong>{was}</strong>."
+            values={{ was }}
+            parts={{ strong: (words) => <strong>{words}</strong> }}
+          />
         </span>
       )}
-      {right === null ? null : right > 0.5 ? <Badge tone="good">correct</Badge> : <Badge tone="bad">incorrect</Badge>}
+      {right === null ? null : right > 0.5 ? (
+        <Badge tone="good">{say('correct')}</Badge>
+      ) : (
+        <Badge tone="bad">{say('incorrect')}</Badge>
+      )}
     </p>
   );
 }
@@ -177,17 +193,17 @@ function Replay({ trial, may }: { readonly trial: Trial; readonly may: boolean }
       onKeyDown={(event) => onPlayerKey(event, player, cursor.now() ?? 0, trial.duration_s, moments)}
     >
       {failed ? (
-        <Notice tone="bad" title="The recording could not be loaded." onRetry={retry}>
+        <Notice tone="bad" title={say('The recording could not be loaded.')} onRetry={retry}>
           {failed.message}
         </Notice>
       ) : null}
       {other.isError ? (
-        <Notice tone="bad" title="The example could not be loaded.">
+        <Notice tone="bad" title={say('The example could not be loaded.')}>
           {other.error.message}
         </Notice>
       ) : null}
       <div className={styles.two}>
-        <Card title="Replay">
+        <Card title={say('Replay')}>
           <div className={styles.stack}>
             {way && trial.rig === 'palpation' && tips ? (
               <Picture trial={trial} way={way} tips={tips} ghost={ghost} cursor={cursor} />
@@ -207,15 +223,16 @@ function Replay({ trial, may }: { readonly trial: Trial; readonly may: boolean }
                   scenario={trial.scenario}
                 />
                 <p className={styles.muted}>
-                  Space: play or pause. Arrow keys: move by 1 s (with Shift by 0.1 s). N and P: next and previous event.
-                  Click or drag in the charts to move in time.
+                  {say(
+                    'Space: play or pause. Arrow keys: move by 1 s (with Shift by 0.1 s). N and P: next and previous event. Click or drag in the charts to move in time.',
+                  )}
                 </p>
               </>
             ) : null}
             <ExampleField trial={trial.id} choice={choice} may={may} onChoice={setChoice} />
           </div>
         </Card>
-        <Card title="Comments">
+        <Card title={say('Comments')}>
           <Comments trial={trial.id} cursor={cursor} player={player} may={may} />
         </Card>
       </div>
@@ -230,12 +247,12 @@ export function DebriefPage({ id }: { readonly id: string }) {
   const may = role === 'admin' || role === 'faculty';
   const mayRate = may || role === 'director';
   const trial = query.data;
-  useTitle(trial ? `Debrief: ${personOf(trial)}` : 'Debrief');
+  useTitle(trial ? say('Debrief: {trial}', { trial: personOf(trial) }) : say('Debrief'));
   const missing = query.error instanceof ApiError && query.error.code === 'not_found';
   return (
     <div className={styles.page}>
       <p>
-        <Link href={`/trials/${id}`}>← Trial and measures</Link>
+        <Link href={`/trials/${id}`}>← {say('Trial and measures')}</Link>
         {trial?.study?.id.startsWith('a-') ? (
           <>
             {' '}
@@ -245,14 +262,16 @@ export function DebriefPage({ id }: { readonly id: string }) {
       </p>
       {query.isPending ? (
         <div role="status">
-          <span className="hidden-visually">Loading the trial</span>
+          <span className="hidden-visually">{say('Loading the trial')}</span>
           <Skeleton height="640px" />
         </div>
       ) : null}
       {query.isError && !trial ? (
         <Notice
           tone={missing ? 'warn' : 'bad'}
-          title={missing ? 'Trial not found, or its results are not released.' : 'The trial could not be loaded.'}
+          title={
+            missing ? say('Trial not found, or its results are not released.') : say('The trial could not be loaded.')
+          }
           onRetry={missing ? undefined : () => void query.refetch()}
         >
           {query.error.message}
@@ -261,8 +280,8 @@ export function DebriefPage({ id }: { readonly id: string }) {
       {trial ? (
         <>
           <div className={styles.headline}>
-            <h1>Debrief: {trial.case_title}</h1>
-            {trial.simulated ? <Badge tone="warn">simulated</Badge> : null}
+            <h1>{say('Debrief: {trial}', { trial: trial.case_title })}</h1>
+            {trial.simulated ? <Badge tone="warn">{say('simulated')}</Badge> : null}
             <span className={styles.muted}>
               {personOf(trial)}, {formatDateTime(trial.started_utc_us)}, {formatDuration(trial.duration_s)}
             </span>

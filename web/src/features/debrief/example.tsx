@@ -1,5 +1,6 @@
 import { useMutation, useQuery, useQueryClient } from '@tanstack/react-query';
 import { assignmentQuery, referencesQuery, setReference, setRelease, type References, type Trial } from '@/api';
+import { say } from '@/language';
 import { Button, Notice, Select } from '@/ui';
 import { formatDateTime, formatDuration } from '@/units';
 import styles from './debrief.module.css';
@@ -10,7 +11,7 @@ export interface Choice {
 }
 
 const nameOf = (one: References['trials'][number]) =>
-  `${one.operator || 'an expert'}${one.simulated ? ', simulated' : ''}, ${formatDateTime(one.started_utc_us)}, ${formatDuration(one.duration_s)}`;
+  `${one.operator || say('an expert')}${one.simulated ? `, ${say('simulated')}` : ''}, ${formatDateTime(one.started_utc_us)}, ${formatDuration(one.duration_s)}`;
 
 /** The example trial that is replayed as a ghost, and how its time is aligned. */
 export function ExampleField({
@@ -34,31 +35,31 @@ export function ExampleField({
   });
   if (query.isError)
     return (
-      <Notice tone="warn" title="Examples could not be loaded." onRetry={() => void query.refetch()}>
+      <Notice tone="warn" title={say('Examples could not be loaded.')} onRetry={() => void query.refetch()}>
         {query.error.message}
       </Notice>
     );
   const trials = query.data?.trials ?? [];
   const options = [
-    { value: '', text: trials.length === 0 ? 'none available for this case' : 'none' },
+    { value: '', text: trials.length === 0 ? say('none available for this case') : say('none') },
     ...trials.map((one) => ({ value: one.id, text: nameOf(one) })),
   ];
   return (
     <div className={styles.example}>
       <Select
-        label="Example trial"
+        label={say('Example trial')}
         value={choice.id}
         disabled={trials.length === 0}
         options={options}
         onChange={(event) => onChoice({ ...choice, id: event.target.value })}
       />
       <Select
-        label="Align by"
+        label={say('Align by')}
         value={choice.by}
         disabled={choice.id === ''}
         options={[
-          { value: 'progress', text: 'progress along the tract' },
-          { value: 'time', text: 'time' },
+          { value: 'progress', text: say('progress along the tract') },
+          { value: 'time', text: say('time') },
         ]}
         onChange={(event) => onChoice({ ...choice, by: event.target.value === 'time' ? 'time' : 'progress' })}
       />
@@ -68,11 +69,11 @@ export function ExampleField({
           disabled={offered.isPending}
           onClick={() => offered.mutate(!query.data.reference)}
         >
-          {query.data.reference ? 'Shared as an example' : 'Share as an example'}
+          {query.data.reference ? say('Shared as an example') : say('Share as an example')}
         </Button>
       ) : null}
       {offered.isError ? (
-        <Notice tone="bad" title="The action failed.">
+        <Notice tone="bad" title={say('The action failed.')}>
           {offered.error.message}
         </Notice>
       ) : null}
@@ -98,11 +99,11 @@ export function ReleaseField({ trial, may }: { readonly trial: Trial; readonly m
     <p className={styles.release} data-part="release">
       <span>
         {held
-          ? 'Trainees cannot see the results of this assignment yet.'
-          : 'Trainees can see the results and comments of this assignment.'}
+          ? say('Trainees cannot see the results of this assignment yet.')
+          : say('Trainees can see the results and comments of this assignment.')}
       </span>
       <Button look={held ? 'solid' : 'plain'} disabled={set.isPending} onClick={() => set.mutate(held)}>
-        {held ? 'Release results' : 'Hide results'}
+        {held ? say('Release results') : say('Hide results')}
       </Button>
       {set.isError ? <span role="alert">{set.error.message}</span> : null}
     </p>

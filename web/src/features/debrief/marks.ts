@@ -1,5 +1,6 @@
 /** Moments of a trial that one jumps to. */
 import type { ForceDepth, Trial, TrialComment } from '@/api';
+import { marked, say } from '@/language';
 
 export interface Moment {
   readonly t_s: number;
@@ -8,11 +9,11 @@ export interface Moment {
 }
 
 const kEventNames: Record<string, string> = {
-  start: 'start',
-  end: 'end',
-  answer: 'answer',
-  fault: 'fault',
-  interrupted: 'interrupted',
+  start: marked('start'),
+  end: marked('end'),
+  answer: marked('answer'),
+  fault: marked('fault'),
+  interrupted: marked('interrupted'),
 };
 const kUnmarked: readonly string[] = ['tare'];
 
@@ -21,7 +22,7 @@ export function breaches(curve: ForceDepth | undefined): Moment[] {
   const out: Moment[] = [];
   curve?.mode.forEach((mode, i) => {
     if (mode === 'breach' && curve.mode[i - 1] !== 'breach')
-      out.push({ t_s: curve.t_s[i] ?? 0, text: 'breach', kind: 'event' });
+      out.push({ t_s: curve.t_s[i] ?? 0, text: say('breach'), kind: 'event' });
   });
   return out;
 }

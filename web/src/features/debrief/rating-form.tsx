@@ -1,6 +1,7 @@
 import { useMutation } from '@tanstack/react-query';
 import { useId, useState, type FormEvent } from 'react';
 import { addRating, type RatingRequest, type RubricItem } from '@/api';
+import { say } from '@/language';
 import { Button, Field, Notice } from '@/ui';
 import { formatCount } from '@/units';
 import styles from './rating.module.css';
@@ -32,7 +33,7 @@ function ItemScale({
         <li>
           {formatCount(item.low)}: {item.low_text}
         </li>
-        {item.middle_text === '' ? null : <li>middle: {item.middle_text}</li>}
+        {item.middle_text === '' ? null : <li>{say('middle: {middle_text}', { middle_text: item.middle_text })}</li>}
         <li>
           {formatCount(item.high)}: {item.high_text}
         </li>
@@ -70,7 +71,7 @@ export function RatingForm({
     sent.mutate();
   };
   return (
-    <form className={styles.form} onSubmit={submit} aria-label={`Rate by ${rubric.title}`}>
+    <form className={styles.form} onSubmit={submit} aria-label={say('Rate by {title}', { title: rubric.title })}>
       <div className={styles.items}>
         {rubric.items.map((item, i) => (
           <ItemScale
@@ -82,31 +83,34 @@ export function RatingForm({
         ))}
       </div>
       <Field
-        label="Comment (optional)"
+        label={say('Comment (optional)')}
         value={comment}
         maxLength={1000}
         onChange={(event) => setComment(event.target.value)}
       />
       {before ? (
         <Field
-          label="Reason to supersede your rating"
+          label={say('Reason to supersede your rating')}
           value={reason}
           maxLength={400}
           onChange={(event) => setReason(event.target.value)}
         />
       ) : null}
       {sent.isError ? (
-        <Notice tone="bad" title="The rating was not stored.">
+        <Notice tone="bad" title={say('The rating was not stored.')}>
           {sent.error.message}
         </Notice>
       ) : null}
       <div className={styles.go}>
         <span className={styles.muted}>
-          {formatCount(given.length)} of {formatCount(rubric.items.length)} items.{' '}
-          {before ? 'The rating before is kept.' : 'A submitted rating cannot be changed, only superseded.'}
+          {say('{given} of {all} items.', {
+            given: formatCount(given.length),
+            all: formatCount(rubric.items.length),
+          })}{' '}
+          {before ? say('The rating before is kept.') : say('A submitted rating cannot be changed, only superseded.')}
         </span>
         <Button look="solid" type="submit" disabled={!complete || sent.isPending}>
-          {sent.isPending ? 'Saving…' : before ? 'Supersede my rating' : 'Submit rating'}
+          {sent.isPending ? say('Saving…') : before ? say('Supersede my rating') : say('Submit rating')}
         </Button>
       </div>
     </form>

@@ -10,6 +10,7 @@ import {
   type Rating,
   type RatingRequest,
 } from '@/api';
+import { say } from '@/language';
 import { Badge, Button, Card, Notice, Select, Skeleton, Table } from '@/ui';
 import { formatCount, formatDateTime } from '@/units';
 import { RatingForm } from './rating-form';
@@ -26,19 +27,19 @@ function Given({ request }: { readonly request: RatingRequest }) {
   if (held.length === 0) return null;
   const rows: Row[] = [
     ...request.rubric.items.map(({ label }, i) => ({ label, points: held.map(({ scores }) => scores[i] ?? 0) })),
-    { label: 'Sum', points: held.map(({ total }) => total) },
+    { label: say('Sum'), points: held.map(({ total }) => total) },
   ];
   const line = ({ rater, made_utc_us, scores, total, reason }: Rating) =>
-    `${rater}, ${formatDateTime(made_utc_us)}: ${scores.map((one) => formatCount(one)).join(', ')} (sum ${formatCount(total)})${reason === '' ? '' : `; reason: ${reason}`}`;
+    `${rater}, ${formatDateTime(made_utc_us)}: ${scores.map((one) => formatCount(one)).join(', ')} (sum ${formatCount(total)})${reason === '' ? '' : `; ${say('reason: {reason}', { reason })}`}`;
   return (
     <>
       <Table<Row>
-        caption={`Ratings by ${request.rubric.title}`}
+        caption={say('Ratings by {title}', { title: request.rubric.title })}
         rows={rows}
         keyOf={({ label }, i) => `${i} ${label}`}
         empty=""
         columns={[
-          { name: 'Item', cell: ({ label }) => label },
+          { name: say('Item'), cell: ({ label }) => label },
           ...held.map(({ rater }, i) => ({
             name: rater,
             cell: ({ points }: Row) => formatCount(points[i] ?? 0),
@@ -52,13 +53,15 @@ function Given({ request }: { readonly request: RatingRequest }) {
           .map(({ rater, comment, reason }) => (
             <li key={rater}>
               <strong>{rater}:</strong> {comment}
-              {reason === '' ? null : <span className={styles.muted}> Supersedes an earlier rating: {reason}</span>}
+              {reason === '' ? null : (
+                <span className={styles.muted}> {say('Supersedes an earlier rating: {reason}', { reason })}</span>
+              )}
             </li>
           ))}
       </ul>
       {earlier.length === 0 ? null : (
         <details>
-          <summary>Superseded ratings</summary>
+          <summary>{say('Superseded ratings')}</summary>
           <ul className={styles.said}>
             {earlier.map((one, i) => (
               <li key={i}>{line(one)}</li>
@@ -93,13 +96,15 @@ function Request({
       <div className={styles.head}>
         <h3>{rubric.title}</h3>
         <Badge tone={complete ? 'good' : 'neutral'}>
-          rated by {formatCount(submitted)} of {formatCount(raters)}
+          {say('rated by {submitted} of {raters}', { submitted: formatCount(submitted), raters: formatCount(raters) })}
         </Badge>
-        {blind && !complete ? <Badge tone="accent">name hidden</Badge> : null}
+        {blind && !complete ? <Badge tone="accent">{say('name hidden')}</Badge> : null}
       </div>
       {complete || !may_rate ? null : (
         <p className={styles.muted}>
-          Ratings of others {blind ? 'and the trainee’s name are' : 'are'} shown when all have rated.
+          {blind
+            ? say('Ratings of others and the trainee’s name are shown when all have rated.')
+            : say('Ratings of others are shown when all have rated.')}
         </p>
       )}
       <Given request={request} />
@@ -116,17 +121,17 @@ function Request({
       <div className={styles.buttons}>
         {may_rate ? (
           <Button look={rated || rating ? 'plain' : 'solid'} onClick={() => setRating(!rating)}>
-            {rating ? 'Close' : rated ? 'Supersede my rating…' : 'Rate this trial'}
+            {rating ? say('Close') : rated ? say('Supersede my rating…') : say('Rate this trial')}
           </Button>
         ) : null}
         {may_rate && submitted === 0 ? (
           <Button look="quiet" disabled={withdrawn.isPending} onClick={() => withdrawn.mutate()}>
-            Withdraw
+            {say('Withdraw')}
           </Button>
         ) : null}
       </div>
       {withdrawn.isError ? (
-        <Notice tone="bad" title="The request was not withdrawn.">
+        <Notice tone="bad" title={say('The request was not withdrawn.')}>
           {withdrawn.error.message}
         </Notice>
       ) : null}
@@ -158,31 +163,31 @@ function Asking({
   });
   if (free.length === 0)
     return all.length === 0 ? (
-      <p className={styles.muted}>There is no rubric yet; a programme director makes them.</p>
+      <p className={styles.muted}>{say('There is no rubric yet; a programme director makes them.')}</p>
     ) : null;
   return (
     <div className={styles.asking}>
       <Select
-        label="Rubric"
+        label={say('Rubric')}
         value={rubric}
         onChange={(event) => setChosen(event.target.value)}
         options={free.map(({ id, title }) => ({ value: id, text: title }))}
       />
       <Select
-        label="Raters"
+        label={say('Raters')}
         value={raters}
         onChange={(event) => setRaters(event.target.value)}
         options={['1', '2', '3', '4', '5'].map((value) => ({ value, text: value }))}
       />
       <label className={styles.check}>
-        <input type="checkbox" checked={blind} onChange={(event) => setBlind(event.target.checked)} /> hide the
-        trainee’s name until all have rated
+        <input type="checkbox" checked={blind} onChange={(event) => setBlind(event.target.checked)} />{' '}
+        {say('hide the trainee’s name until all have rated')}
       </label>
       <Button disabled={asked.isPending} onClick={() => asked.mutate()}>
-        Have this trial rated
+        {say('Have this trial rated')}
       </Button>
       {asked.isError ? (
-        <Notice tone="bad" title="The trial is not to be rated yet.">
+        <Notice tone="bad" title={say('The trial is not to be rated yet.')}>
           {asked.error.message}
         </Notice>
       ) : null}
@@ -202,15 +207,15 @@ export function Ratings({ trial, may }: { readonly trial: string; readonly may: 
   };
   const requests = query.data?.requests;
   return (
-    <Card title="Ratings">
+    <Card title={say('Ratings')}>
       <div className={styles.stack}>
         {query.isError ? (
-          <Notice tone="bad" title="The ratings could not be loaded." onRetry={() => void query.refetch()}>
+          <Notice tone="bad" title={say('The ratings could not be loaded.')} onRetry={() => void query.refetch()}>
             {query.error.message}
           </Notice>
         ) : null}
         {query.isPending ? <Skeleton height="120px" /> : null}
-        {requests?.length === 0 ? <p className={styles.muted}>No ratings yet.</p> : null}
+        {requests?.length === 0 ? <p className={styles.muted}>{say('No ratings yet.')}</p> : null}
         {requests?.map((request) => (
           <Request key={request.rubric.id} trial={trial} request={request} onChanged={store} />
         ))}

@@ -1,6 +1,7 @@
 import { useEffect, useRef, type PointerEvent } from 'react';
 import { curve, Plane, type Cursor, type Places } from '@/charts';
 import type { Scenario } from '@/api';
+import { say } from '@/language';
 import type { Moments, Way } from './align';
 import styles from './debrief.module.css';
 import type { Moment } from './marks';
@@ -100,7 +101,7 @@ function Line(
   return (
     <div className={styles.line} data-part={`line-${column}`} {...handlers}>
       <Plane
-        across={{ title: 'time, s', from: 0, to: Math.max(duration_s, 0.1) }}
+        across={{ title: say('time, s'), from: 0, to: Math.max(duration_s, 0.1) }}
         up={{ title, from: least, to: end }}
         height_px={170}
         data={{
@@ -108,7 +109,11 @@ function Line(
           columns: ['t_s', column],
           rows: way.t_s.map((t, i) => [t, way[column][i] ?? null]),
         }}
-        summary={`${title} over the trial${ghost ? ', with the curve of the example' : ''}.`}
+        summary={
+          ghost
+            ? say('{title} over the trial, with the curve of the example.', { title })
+            : say('{title} over the trial.', { title })
+        }
       >
         {(places) => {
           remember(places);
@@ -151,7 +156,7 @@ function Line(
                   <line y1={22} y2={22 + places.height_px} />
                   {named && one.kind === 'event' && !kEnds.includes(one.text) ? (
                     <text y={19} textAnchor={one.t_s > duration_s / 2 ? 'end' : 'start'}>
-                      {one.text}
+                      {say(one.text)}
                     </text>
                   ) : null}
                   {one.kind === 'comment' ? <circle cy={26} r={4} /> : null}
@@ -178,8 +183,14 @@ function Line(
 export function Timeline(props: Props) {
   return (
     <div className={styles.stack}>
-      <Line {...props} column="force_N" title={props.scenario ? 'hand force, N' : 'tip force, N'} scale={1} named />
-      <Line {...props} column="depth_m" title="tip depth, mm" scale={1000} named={false} />
+      <Line
+        {...props}
+        column="force_N"
+        title={props.scenario ? say('hand force, N') : say('tip force, N')}
+        scale={1}
+        named
+      />
+      <Line {...props} column="depth_m" title={say('tip depth, mm')} scale={1000} named={false} />
     </div>
   );
 }

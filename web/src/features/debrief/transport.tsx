@@ -1,5 +1,6 @@
 import { useEffect, useRef, useSyncExternalStore, type KeyboardEvent } from 'react';
 import type { Cursor } from '@/charts';
+import { say } from '@/language';
 import { Button, Select } from '@/ui';
 import { formatForce, formatLength, formatTime, metre, newton, second } from '@/units';
 import { rowAt, type Way } from './align';
@@ -73,7 +74,7 @@ function Scrubber({
       ref={input}
       type="range"
       className={styles.scrub}
-      aria-label="Time in the trial"
+      aria-label={say('Time in the trial')}
       min={0}
       max={duration_s}
       step={0.01}
@@ -97,11 +98,16 @@ export function Now({
   const row = rowAt(way.t_s, now);
   const other = ghost ? rowAt(ghost.way.t_s, ghost.at(now)) : 0;
   const describe = (one: Way, at: number) =>
-    `${formatForce(newton(one.force_N[at] ?? 0))}, ${formatLength(metre(one.depth_m[at] ?? 0))} deep`;
+    say('{force}, {depth} deep', {
+      force: formatForce(newton(one.force_N[at] ?? 0)),
+      depth: formatLength(metre(one.depth_m[at] ?? 0)),
+    });
   return (
     <p className={styles.now} data-part="now">
       <strong>{formatTime(second(now), 1)}</strong> <span>{describe(way, row)}</span>
-      {ghost ? <span className={styles.ghostText}>example: {describe(ghost.way, other)}</span> : null}
+      {ghost ? (
+        <span className={styles.ghostText}>{say('example: {reading}', { reading: describe(ghost.way, other) })}</span>
+      ) : null}
     </p>
   );
 }
@@ -120,19 +126,24 @@ export function Transport({ duration_s, cursor, player, moments }: Props) {
     if (to) player.seek(to.t_s);
   };
   return (
-    <div className={styles.transport} role="group" aria-label="Replay">
-      <Button look="solid" label={player.playing ? 'Pause' : 'Play'} className={styles.play} onClick={player.toggle}>
+    <div className={styles.transport} role="group" aria-label={say('Replay')}>
+      <Button
+        look="solid"
+        label={player.playing ? say('Pause') : say('Play')}
+        className={styles.play}
+        onClick={player.toggle}
+      >
         {player.playing ? '❚❚' : '▶'}
       </Button>
-      <Button label="Previous event" onClick={() => jump(-1)}>
+      <Button label={say('Previous event')} onClick={() => jump(-1)}>
         |◀
       </Button>
-      <Button label="Next event" onClick={() => jump(1)}>
+      <Button label={say('Next event')} onClick={() => jump(1)}>
         ▶|
       </Button>
       <Scrubber duration_s={duration_s} cursor={cursor} player={player} />
       <Select
-        label={<span className="hidden-visually">Speed</span>}
+        label={<span className="hidden-visually">{say('Speed')}</span>}
         value={String(player.speed)}
         options={kSpeeds.map((speed) => ({ value: String(speed), text: `${speed} ×` }))}
         onChange={(event) => player.setSpeed(Number(event.target.value))}

@@ -1,5 +1,6 @@
 /** The guide, a page for each role. */
 import { lazy } from 'react';
+import { marked } from '@/language';
 import type { Feature } from '@/ui';
 
 const index = () => import('./index');
@@ -9,7 +10,7 @@ export const feature: Feature = {
   menu: [
     {
       to: '/guide',
-      name: 'Guide',
+      name: marked('Guide'),
       roles: ['admin', 'director', 'faculty', 'researcher', 'technician', 'trainee'],
       order: 130,
     },

@@ -1,5 +1,6 @@
 /** Pages of the model lab. */
 import { lazy } from 'react';
+import { marked } from '@/language';
 import type { Feature } from '@/ui';
 
 const index = () => import('./index');
@@ -8,7 +9,7 @@ const VersionsPage = lazy(() => index().then(({ VersionsPage: page }) => ({ defa
 const WorkPage = lazy(() => index().then(({ WorkPage: page }) => ({ default: page })));
 
 export const feature: Feature = {
-  menu: [{ to: '/lab', name: 'Model lab', roles: ['admin', 'researcher'], order: 100 }],
+  menu: [{ to: '/lab', name: marked('Model lab'), roles: ['admin', 'researcher'], order: 100 }],
   pages: [
     { path: '/lab', show: () => <LabPage /> },
     { path: '/lab/versions', show: () => <VersionsPage /> },

@@ -3,6 +3,7 @@ import { useQuery } from '@tanstack/react-query';
 import { lazy } from 'react';
 import { Redirect } from 'wouter';
 import { sessionQuery } from '@/api';
+import { marked } from '@/language';
 import type { Feature } from '@/ui';
 
 const index = () => import('./index');
@@ -24,7 +25,9 @@ function FirstPage() {
 }
 
 export const feature: Feature = {
-  menu: [{ to: '/network', name: 'Network', roles: ['admin', 'director', 'faculty', 'technician'], order: 120 }],
+  menu: [
+    { to: '/network', name: marked('Network'), roles: ['admin', 'director', 'faculty', 'technician'], order: 120 },
+  ],
   pages: [
     { path: '/network', show: () => <FirstPage /> },
     { path: '/network/people', show: () => <PeoplePage /> },

@@ -1,5 +1,6 @@
 /** Pages of ratings by people: what is to be rated, rubrics, how far raters agree. A trial is rated in its debriefing. */
 import { lazy } from 'react';
+import { marked } from '@/language';
 import type { Feature } from '@/ui';
 
 const index = () => import('./index');
@@ -9,7 +10,7 @@ const RubricEditor = lazy(() => index().then(({ RubricEditor: page }) => ({ defa
 const RubricsPage = lazy(() => index().then(({ RubricsPage: page }) => ({ default: page })));
 
 export const feature: Feature = {
-  menu: [{ to: '/ratings', name: 'Ratings', roles: ['director', 'faculty'], order: 57 }],
+  menu: [{ to: '/ratings', name: marked('Ratings'), roles: ['director', 'faculty'], order: 57 }],
   pages: [
     { path: '/ratings', show: () => <RatingsPage /> },
     { path: '/ratings/agreement', show: () => <AgreementPage /> },

@@ -1,7 +1,8 @@
 import { useMutation, useQuery, useQueryClient } from '@tanstack/react-query';
 import { Link } from 'wouter';
 import { ApiError, sessionQuery, signOut } from '@/api';
-import { Button } from '@/ui';
+import { say } from '@/language';
+import { Button, roleName } from '@/ui';
 import styles from './account.module.css';
 import { noteSignOut } from './ended';
 
@@ -24,14 +25,14 @@ export function Account() {
     <>
       {leave.isError ? (
         <span role="alert" className={styles.failed}>
-          Signing out failed: {leave.error.message}
+          {say('Signing out failed: {message}', { message: leave.error.message })}
         </span>
       ) : null}
       <Link href="/account" className={styles.who}>
-        {session.data.name} <span className={styles.role}>{session.data.role}</span>
+        {session.data.name} <span className={styles.role}>{roleName(session.data.role)}</span>
       </Link>
       <Button onClick={() => leave.mutate()} disabled={leave.isPending}>
-        Sign out
+        {say('Sign out')}
       </Button>
     </>
   );

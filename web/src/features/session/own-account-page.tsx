@@ -2,6 +2,7 @@ import { useMutation } from '@tanstack/react-query';
 import { useState, type FormEvent } from 'react';
 import { Link } from 'wouter';
 import { beginCodes, confirmCodes, endCodes, ownDataAddress } from '@/api';
+import { say } from '@/language';
 import { Button, Card, Field, Notice, useTitle } from '@/ui';
 import styles from './own-account.module.css';
 import { PasswordForm } from './password-form';
@@ -19,7 +20,7 @@ function Codes() {
   const failed = enrolled.error ?? confirmed.error ?? ended.error;
   const field = (
     <Field
-      label="Code from the app"
+      label={say('Code from the app')}
       value={code}
       inputMode="numeric"
       autoComplete="one-time-code"
@@ -30,28 +31,29 @@ function Codes() {
   return (
     <div className={styles.stack}>
       <p>
-        With one-time codes, a stolen password is not enough to sign in: an app on your phone shows a new code every 30
-        seconds.
+        {say(
+          'With one-time codes, a stolen password is not enough to sign in: an app on your phone shows a new code every 30 seconds.',
+        )}
       </p>
       {failed ? (
-        <Notice tone="bad" title="The action failed.">
+        <Notice tone="bad" title={say('The action failed.')}>
           {failed.message}
         </Notice>
       ) : null}
       {confirmed.isSuccess ? (
-        <Notice title="One-time codes are on.">You will be asked for a code at each sign-in.</Notice>
+        <Notice title={say('One-time codes are on.')}>{say('You will be asked for a code at each sign-in.')}</Notice>
       ) : ended.isSuccess ? (
-        <Notice title="One-time codes are off.">You sign in with your password only.</Notice>
+        <Notice title={say('One-time codes are off.')}>{say('You sign in with your password only.')}</Notice>
       ) : enrolled.data ? (
         <form className={styles.form} onSubmit={submit}>
-          <p>Enter this secret in the app, then enter the code that the app shows.</p>
+          <p>{say('Enter this secret in the app, then enter the code that the app shows.')}</p>
           <p className={styles.secret}>{enrolled.data.secret}</p>
           <p>
-            <a href={enrolled.data.uri}>Open in an app on this computer</a>
+            <a href={enrolled.data.uri}>{say('Open in an app on this computer')}</a>
           </p>
           {field}
           <Button look="solid" type="submit" disabled={confirmed.isPending || code.trim() === ''}>
-            Turn on
+            {say('Turn on')}
           </Button>
         </form>
       ) : (
@@ -64,7 +66,7 @@ function Codes() {
           }}
         >
           <Field
-            label="Your password"
+            label={say('Your password')}
             type="password"
             autoComplete="current-password"
             required
@@ -72,14 +74,14 @@ function Codes() {
             onChange={(event) => setPassword(event.target.value)}
           />
           <Button onClick={() => enrolled.mutate()} disabled={enrolled.isPending || password === ''}>
-            Set up one-time codes
+            {say('Set up one-time codes')}
           </Button>
           <details>
-            <summary>Turn off one-time codes</summary>
+            <summary>{say('Turn off one-time codes')}</summary>
             {field}
             <p>
               <Button type="submit" disabled={ended.isPending || password === '' || code.trim() === ''}>
-                Turn off
+                {say('Turn off')}
               </Button>
             </p>
           </details>
@@ -91,35 +93,36 @@ function Codes() {
 
 /** Password and one-time codes of the signed-in person. */
 export function OwnAccountPage() {
-  useTitle('My account');
+  useTitle(say('My account'));
   return (
     <div className={styles.page}>
-      <h1>My account</h1>
-      <nav aria-label="My account" className={styles.ways}>
-        <Link href="/account/tokens">API tokens</Link>
-        <Link href="/account/notifications">Notifications</Link>
+      <h1>{say('My account')}</h1>
+      <nav aria-label={say('My account')} className={styles.ways}>
+        <Link href="/account/tokens">{say('API tokens')}</Link>
+        <Link href="/account/notifications">{say('Notifications')}</Link>
       </nav>
-      <Card title="Password">
+      <Card title={say('Password')}>
         <PasswordForm />
       </Card>
-      <Card title="One-time codes">
+      <Card title={say('One-time codes')}>
         <Codes />
       </Card>
-      <Card title="My data">
+      <Card title={say('My data')}>
         <div className={styles.stack}>
           <p>
-            One zip file with what this server holds of you: account, consents, assignments, your trials with their
-            recordings, scores, comments and ratings, certificates and sign-ins. Its README.txt says what each file is.
-            Trials whose results are not released yet are not in it. The download is recorded in the audit trail.
+            {say(
+              'One zip file with what this server holds of you: account, consents, assignments, your trials with their recordings, scores, comments and ratings, certificates and sign-ins. Its README.txt says what each file is. Trials whose results are not released yet are not in it. The download is recorded in the audit trail.',
+            )}
           </p>
           <p>
             <a href={ownDataAddress} download>
-              Download my data
+              {say('Download my data')}
             </a>
           </p>
           <p>
-            To leave, ask an administrator: they can erase your account with your trials, or keep your trials without
-            your name.
+            {say(
+              'To leave, ask an administrator: they can erase your account with your trials, or keep your trials without your name.',
+            )}
           </p>
         </div>
       </Card>
@@ -129,12 +132,12 @@ export function OwnAccountPage() {
 
 /** Shown first when the password was created by somebody else. */
 export function FirstPassword() {
-  useTitle('Choose a new password');
+  useTitle(say('Choose a new password'));
   return (
     <div className={styles.page}>
-      <h1>Choose a new password</h1>
-      <p>Another person created your password. Choose a new one that only you know.</p>
-      <Card title="Password">
+      <h1>{say('Choose a new password')}</h1>
+      <p>{say('Another person created your password. Choose a new one that only you know.')}</p>
+      <Card title={say('Password')}>
         <PasswordForm />
       </Card>
     </div>

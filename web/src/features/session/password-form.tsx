@@ -1,6 +1,7 @@
 import { useMutation, useQueryClient } from '@tanstack/react-query';
 import { useState, type FormEvent } from 'react';
 import { ApiError, changePassword, sessionQuery } from '@/api';
+import { say } from '@/language';
 import { Button, Field, Notice } from '@/ui';
 import styles from './own-account.module.css';
 
@@ -29,9 +30,9 @@ export function PasswordForm() {
   });
   const fault =
     next !== '' && next.length < kLeast
-      ? `At least ${kLeast} characters.`
+      ? say('At least {least} characters.', { least: kLeast })
       : again !== '' && again !== next
-        ? 'The passwords do not match.'
+        ? say('The passwords do not match.')
         : '';
   const submit = (event: FormEvent) => {
     event.preventDefault();
@@ -40,7 +41,7 @@ export function PasswordForm() {
   return (
     <form className={styles.form} onSubmit={submit}>
       <Field
-        label="Current password"
+        label={say('Current password')}
         type="password"
         autoComplete="current-password"
         required
@@ -48,7 +49,7 @@ export function PasswordForm() {
         onChange={(event) => setOld(event.target.value)}
       />
       <Field
-        label="New password"
+        label={say('New password')}
         type="password"
         autoComplete="new-password"
         required
@@ -56,7 +57,7 @@ export function PasswordForm() {
         onChange={(event) => setNext(event.target.value)}
       />
       <Field
-        label="Repeat new password"
+        label={say('Repeat new password')}
         type="password"
         autoComplete="new-password"
         required
@@ -65,7 +66,7 @@ export function PasswordForm() {
       />
       {codeRequired ? (
         <Field
-          label="One-time code"
+          label={say('One-time code')}
           inputMode="numeric"
           autoComplete="one-time-code"
           maxLength={8}
@@ -78,23 +79,23 @@ export function PasswordForm() {
         {fault}
       </p>
       {changed.error instanceof ApiError && changed.error.code === 'code_needed' ? (
-        <Notice title="This account requires a one-time code.">
-          Enter the code that your app shows, then press “Change password” again.
+        <Notice title={say('This account requires a one-time code.')}>
+          {say('Enter the code that your app shows, then press “Change password” again.')}
         </Notice>
       ) : changed.isError ? (
-        <Notice tone="bad" title="The password was not changed.">
+        <Notice tone="bad" title={say('The password was not changed.')}>
           {changed.error.message}
         </Notice>
       ) : null}
       {changed.isSuccess ? (
-        <Notice title="The password was changed.">Other sessions of this account have ended.</Notice>
+        <Notice title={say('The password was changed.')}>{say('Other sessions of this account have ended.')}</Notice>
       ) : null}
       <Button
         look="solid"
         type="submit"
         disabled={changed.isPending || old === '' || next.length < kLeast || again !== next}
       >
-        {changed.isPending ? 'Changing…' : 'Change password'}
+        {changed.isPending ? say('Changing…') : say('Change password')}
       </Button>
     </form>
   );

@@ -1,6 +1,7 @@
 import { useQuery, useQueryClient } from '@tanstack/react-query';
 import { useEffect, useSyncExternalStore, type ReactNode } from 'react';
 import { resumeRequests, sessionQuery } from '@/api';
+import { say } from '@/language';
 import { Notice } from '@/ui';
 import { currentPerson, notePerson, subscribePerson } from './ended';
 import { FirstPassword } from './own-account-page';
@@ -30,7 +31,7 @@ export function SessionGate({ waiting, children }: { readonly waiting: ReactNode
   if (session.isPending) return waiting;
   if (session.isError && !session.data && person === null) {
     return (
-      <Notice tone="bad" title="The server cannot be reached." onRetry={() => void session.refetch()}>
+      <Notice tone="bad" title={say('The server cannot be reached.')} onRetry={() => void session.refetch()}>
         {session.error.message}
       </Notice>
     );

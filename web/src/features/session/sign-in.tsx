@@ -1,19 +1,22 @@
 import { useMutation, useQuery, useQueryClient } from '@tanstack/react-query';
 import { useEffect, useRef, useState, type FormEvent } from 'react';
 import { ApiError, kOidcStart, oidcOfferQuery, readCard, sessionQuery, signIn } from '@/api';
+import { say } from '@/language';
 import { Button, Field, useTitle } from '@/ui';
 import { endedByItself } from './ended';
 import styles from './sign-in.module.css';
 
 function errorText(reason: Error): string {
-  if (!(reason instanceof ApiError)) return 'Signing in failed.';
+  if (!(reason instanceof ApiError)) return say('Signing in failed.');
   switch (reason.code) {
     case 'unauthorised':
-      return 'Name or password is wrong.';
+      return say('Name or password is wrong.');
     case 'code_needed':
-      return 'This account requires a one-time code.';
+      return say('This account requires a one-time code.');
     case 'too_many':
-      return `Too many failed attempts. Try again ${reason.retryAfter_s === null ? 'in a few minutes' : `in ${reason.retryAfter_s} s`}.`;
+      return reason.retryAfter_s === null
+        ? say('Too many failed attempts. Try again in a few minutes.')
+        : say('Too many failed attempts. Try again in {seconds} s.', { seconds: reason.retryAfter_s });
     default:
       return reason.message;
   }
@@ -23,9 +26,11 @@ function errorText(reason: Error): string {
 function providerMessage(): string {
   switch (new URLSearchParams(window.location.search).get('sign_in')) {
     case 'unknown':
-      return 'Your institution confirmed your identity, but no account on this server is linked with it. Ask an administrator of this server.';
+      return say(
+        'Your institution confirmed your identity, but no account on this server is linked with it. Ask an administrator of this server.',
+      );
     case 'failed':
-      return 'Sign-in through your institution failed. Try again.';
+      return say('Sign-in through your institution failed. Try again.');
     default:
       return '';
   }
@@ -35,7 +40,7 @@ function providerMessage(): string {
 const scannedCard = () => readCard(window.location.hash) ?? { name: '', password: '' };
 
 export function SignIn() {
-  useTitle('Sign in');
+  useTitle(say('Sign in'));
   const client = useQueryClient();
   const [card] = useState(scannedCard);
   const [name, setName] = useState(card.name);
@@ -81,14 +86,14 @@ export function SignIn() {
   return (
     <div className={styles.place}>
       <form className={styles.form} onSubmit={submit} noValidate aria-labelledby="sign-in-title">
-        <h1 id="sign-in-title">Sign in</h1>
+        <h1 id="sign-in-title">{say('Sign in')}</h1>
         <p className={styles.lead}>
           {ended
-            ? 'Your session has ended. Sign in to continue where you were.'
-            : 'Training and assessment in drilling and palpating the channel of a pedicle screw.'}
+            ? say('Your session has ended. Sign in to continue where you were.')
+            : say('Training and assessment in drilling and palpating the channel of a pedicle screw.')}
         </p>
         <Field
-          label="Name"
+          label={say('Name')}
           name="username"
           autoComplete="username"
           autoCapitalize="none"
@@ -100,7 +105,7 @@ export function SignIn() {
           aria-invalid={attempt.isError}
         />
         <Field
-          label="Password"
+          label={say('Password')}
           name="password"
           type="password"
           autoComplete="current-password"
@@ -112,7 +117,7 @@ export function SignIn() {
         />
         {codeRequired ? (
           <Field
-            label="One-time code"
+            label={say('One-time code')}
             name="code"
             inputMode="numeric"
             autoComplete="one-time-code"
@@ -126,11 +131,11 @@ export function SignIn() {
           {attempt.isError ? errorText(attempt.error) : back}
         </p>
         <Button type="submit" look="solid" disabled={attempt.isPending}>
-          {attempt.isPending ? 'Signing in…' : 'Sign in'}
+          {attempt.isPending ? say('Signing in…') : say('Sign in')}
         </Button>
         {offer.data?.offered ? (
           <a className={styles.provider} href={kOidcStart}>
-            {offer.data.label ?? 'Sign in with your institution'}
+            {offer.data.label ?? say('Sign in with your institution')}
           </a>
         ) : null}
       </form>

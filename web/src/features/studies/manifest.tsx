@@ -1,5 +1,6 @@
 /** The list of studies, and a new one. */
 import { lazy } from 'react';
+import { marked } from '@/language';
 import type { Feature } from '@/ui';
 
 const index = () => import('./index');
@@ -7,7 +8,7 @@ const NewStudyPage = lazy(() => index().then(({ NewStudyPage: page }) => ({ defa
 const StudiesPage = lazy(() => index().then(({ StudiesPage: page }) => ({ default: page })));
 
 export const feature: Feature = {
-  menu: [{ to: '/studies', name: 'Studies', roles: ['admin', 'researcher'], order: 80 }],
+  menu: [{ to: '/studies', name: marked('Studies'), roles: ['admin', 'researcher'], order: 80 }],
   pages: [
     { path: '/studies', show: () => <StudiesPage /> },
     { path: '/studies/new', show: () => <NewStudyPage /> },

@@ -1,5 +1,6 @@
 import type { CohortProgress } from '@/api';
 import { curve, Plane } from '@/charts';
+import { say } from '@/language';
 import { formatCount, formatShare } from '@/units';
 import styles from './trainees.module.css';
 
@@ -17,14 +18,19 @@ export function CohortChart({ cohorts }: { readonly cohorts: readonly CohortProg
   return (
     <>
       <Plane
-        across={{ title: 'running trial number', from: 0, to: last }}
-        up={{ title: 'correct answers, %', from: 0, to: 100 }}
+        across={{ title: say('running trial number'), from: 0, to: last }}
+        up={{ title: say('correct answers, %'), from: 0, to: 100 }}
         height_px={300}
-        summary={`Share of correct answers by running trial number. ${shown
+        summary={`${say('Share of correct answers by running trial number.')} ${shown
           .map(({ name, bins }) => {
             const now = bins.at(-1);
             return now
-              ? `${name}: ${formatShare(now.share)} at trials ${formatCount(now.from)} to ${formatCount(now.to)}.`
+              ? say('{name}: {share} at trials {from} to {to}.', {
+                  name,
+                  share: formatShare(now.share),
+                  from: formatCount(now.from),
+                  to: formatCount(now.to),
+                })
               : '';
           })
           .join(' ')}`}
@@ -77,7 +83,7 @@ export function CohortChart({ cohorts }: { readonly cohorts: readonly CohortProg
         ))}
       </ul>
       <p className={styles.muted}>
-        Means over trainees in steps of five trials; lines: 95 % intervals of the mean over trainees.
+        {say('Means over trainees in steps of five trials; lines: 95 % intervals of the mean over trainees.')}
       </p>
     </>
   );

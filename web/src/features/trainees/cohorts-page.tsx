@@ -2,6 +2,7 @@ import { useQuery } from '@tanstack/react-query';
 import { useState } from 'react';
 import { Link } from 'wouter';
 import { cohortProgressQuery } from '@/api';
+import { say } from '@/language';
 import { Badge, Card, DataTable, Notice, Select, Skeleton, Term, useTitle } from '@/ui';
 import { formatCount, formatDateTime, formatShare, kNone } from '@/units';
 import { CohortChart } from './cohort-chart';
@@ -14,7 +15,7 @@ type Show = 'all' | 'behind' | 'away';
 
 /** Cohorts beside one another: their learning curves, who is behind, and who has not come for a while. */
 export function CohortsPage() {
-  useTitle('Cohorts');
+  useTitle(say('Cohorts'));
   const query = useQuery(cohortProgressQuery);
   const [days, setDays] = useState(30);
   const [show, setShow] = useState<Show>('all');
@@ -30,26 +31,26 @@ export function CohortsPage() {
   return (
     <div className={styles.page}>
       <p className={styles.back}>
-        <Link href="/trainees">← Trainees</Link>
+        <Link href="/trainees">← {say('Trainees')}</Link>
       </p>
       <div>
-        <h1>Cohorts</h1>
+        <h1>{say('Cohorts')}</h1>
         <p className={styles.lead}>
-          How cohorts learn, who is behind the others of the cohort, and who has not come for a while.
+          {say('How cohorts learn, who is behind the others of the cohort, and who has not come for a while.')}
         </p>
       </div>
       {query.isError ? (
-        <Notice tone="bad" title="The cohorts could not be loaded." onRetry={() => void query.refetch()}>
+        <Notice tone="bad" title={say('The cohorts could not be loaded.')} onRetry={() => void query.refetch()}>
           {query.error.message}
         </Notice>
       ) : null}
-      <Card title="Correct answers by running trial number">
+      <Card title={say('Correct answers by running trial number')}>
         {cohorts ? (
           cohorts.some(({ bins }) => bins.length > 0) ? (
             <CohortChart cohorts={cohorts} />
           ) : (
             <p className={styles.muted}>
-              {cohorts.length === 0 ? 'There are no cohorts yet.' : 'No trainee has five scored trials yet.'}
+              {cohorts.length === 0 ? say('There are no cohorts yet.') : say('No trainee has five scored trials yet.')}
             </p>
           )
         ) : query.isPending ? (
@@ -57,49 +58,53 @@ export function CohortsPage() {
         ) : null}
       </Card>
       <Card
-        title={all ? `${formatCount(behind)} behind, ${formatCount(away)} away` : 'Trainees'}
+        title={
+          all
+            ? say('{behind} behind, {away} away', { behind: formatCount(behind), away: formatCount(away) })
+            : say('Trainees')
+        }
         aside={
           <span className={styles.tools}>
             <Select
-              label="Cohort"
+              label={say('Cohort')}
               value={cohort}
               onChange={(event) => setCohort(event.target.value)}
               options={[
-                { value: '', text: 'All' },
+                { value: '', text: say('All') },
                 ...(cohorts ?? []).map(({ name }) => ({ value: name, text: name })),
               ]}
             />
             <Select
-              label="Show"
+              label={say('Show')}
               value={show}
               onChange={(event) => setShow(event.target.value as Show)}
               options={[
-                { value: 'all', text: 'All' },
-                { value: 'behind', text: 'Behind' },
-                { value: 'away', text: 'Away' },
+                { value: 'all', text: say('All') },
+                { value: 'behind', text: say('Behind') },
+                { value: 'away', text: say('Away') },
               ]}
             />
             <Select
-              label="Away means no trial for"
+              label={say('Away means no trial for')}
               value={String(days)}
               onChange={(event) => setDays(Number(event.target.value))}
-              options={kDays.map((one) => ({ value: String(one), text: `${one} days` }))}
+              options={kDays.map((one) => ({ value: String(one), text: say('{count} days', { count: one }) }))}
             />
           </span>
         }
       >
         <DataTable<Member>
           address=""
-          caption="Trainees of the cohorts"
-          order="behind first, then longest away"
+          caption={say('Trainees of the cohorts')}
+          order={say('behind first, then longest away')}
           minWidth={760}
           rows={all?.filter(isShown)}
           keyOf={(one) => `${one.cohort} ${one.trainee}`}
-          filter={{ label: 'Search by name', text: (one) => one.trainee }}
-          empty={all?.length === 0 ? 'No trainees yet.' : 'No trainees match the filter.'}
+          filter={{ label: say('Search by name'), text: (one) => one.trainee }}
+          empty={all?.length === 0 ? say('No trainees yet.') : say('No trainees match the filter.')}
           columns={[
             {
-              name: 'Trainee',
+              name: say('Trainee'),
               by: (one) => one.trainee,
               cell: (one) =>
                 one.trials === 0 ? (
@@ -108,10 +113,10 @@ export function CohortsPage() {
                   <Link href={`/trainees/${encodeURIComponent(one.trainee)}`}>{one.trainee}</Link>
                 ),
             },
-            { name: 'Cohort', by: (one) => one.cohort, cell: (one) => one.cohort },
-            { name: 'Trials', by: (one) => one.trials, cell: (one) => formatCount(one.trials), number: true },
+            { name: say('Cohort'), by: (one) => one.cohort, cell: (one) => one.cohort },
+            { name: say('Trials'), by: (one) => one.trials, cell: (one) => formatCount(one.trials), number: true },
             {
-              name: 'Correct of the last ten',
+              name: say('Correct of the last ten'),
               by: (one) => (one.recent_trials === 0 ? null : one.recent_right / one.recent_trials),
               cell: (one) =>
                 one.recent_trials === 0
@@ -120,23 +125,23 @@ export function CohortsPage() {
               number: true,
             },
             {
-              name: <Term definition={kBehind}>Others then</Term>,
-              title: 'Others then',
+              name: <Term definition={say(kBehind)}>{say('Others then')}</Term>,
+              title: say('Others then'),
               by: (one) => one.others_share,
               cell: (one) => (
                 <>
                   {one.others_share === null ? kNone : formatShare(one.others_share)}{' '}
-                  {one.behind ? <Badge tone="bad">behind</Badge> : null}
+                  {one.behind ? <Badge tone="bad">{say('behind')}</Badge> : null}
                 </>
               ),
             },
             {
-              name: 'Last trial',
+              name: say('Last trial'),
               by: (one) => one.last_utc_us,
               cell: (one) => (
                 <>
-                  {one.last_utc_us === null ? 'none yet' : formatDateTime(one.last_utc_us)}{' '}
-                  {isAway(one, days, now) ? <Badge tone="warn">away</Badge> : null}
+                  {one.last_utc_us === null ? say('none yet') : formatDateTime(one.last_utc_us)}{' '}
+                  {isAway(one, days, now) ? <Badge tone="warn">{say('away')}</Badge> : null}
                 </>
               ),
             },

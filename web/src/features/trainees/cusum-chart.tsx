@@ -1,5 +1,6 @@
 import type { Trainee } from '@/api';
 import { curve, Plane } from '@/charts';
+import { say } from '@/language';
 import { formatCount, formatDate } from '@/units';
 import styles from './trainees.module.css';
 
@@ -14,20 +15,26 @@ export function CusumChart({ trainee }: { readonly trainee: Trainee }) {
   const { attempts, rule, competent_at_trial: signal, relapses } = trainee;
   const most = attempts.reduce((top, { sum, relapse_sum }) => Math.max(top, sum, relapse_sum ?? 0), rule.threshold);
   const watched = attempts.filter(({ relapse_sum }) => relapse_sum !== null);
-  const summary = `Sum over ${formatCount(attempts.length)} trials. ${signal === null ? 'The threshold is not reached.' : `Competence is signalled at trial ${formatCount(signal)}.`} ${relapses
-    .map(({ at_trial, recovered_at_trial: back }) =>
-      [
-        `Relapse is signalled at trial ${formatCount(at_trial)}`,
-        back === null ? '.' : ` and has ended at trial ${formatCount(back)}.`,
-      ].join(''),
-    )
-    .join(' ')}`;
+  const summary = [
+    say('Sum over {count} trials.', { count: formatCount(attempts.length) }),
+    signal === null
+      ? say('The threshold is not reached.')
+      : say('Competence is signalled at trial {trial}.', { trial: formatCount(signal) }),
+    ...relapses.map(({ at_trial, recovered_at_trial: back }) =>
+      back === null
+        ? say('Relapse is signalled at trial {trial}.', { trial: formatCount(at_trial) })
+        : say('Relapse is signalled at trial {trial} and has ended at trial {end}.', {
+            trial: formatCount(at_trial),
+            end: formatCount(back),
+          }),
+    ),
+  ].join(' ');
   const last = Math.max(attempts.length, 1);
   return (
     <>
       <Plane
-        across={{ title: 'trial', from: 0, to: last }}
-        up={{ title: 'sum', from: 0, to: most * 1.1 }}
+        across={{ title: say('trial'), from: 0, to: last }}
+        up={{ title: say('sum'), from: 0, to: most * 1.1 }}
         height_px={230}
         summary={summary}
         data={{
@@ -41,7 +48,7 @@ export function CusumChart({ trainee }: { readonly trainee: Trainee }) {
             <g className={styles.threshold}>
               <line x1={places.x(0)} x2={places.x(last)} y1={places.y(rule.threshold)} y2={places.y(rule.threshold)} />
               <text x={places.x(0) + 4} y={places.y(rule.threshold) - 4}>
-                competent
+                {say('competent')}
               </text>
             </g>
             {signal === null ? null : (
@@ -53,7 +60,7 @@ export function CusumChart({ trainee }: { readonly trainee: Trainee }) {
                   y2={places.y(rule.relapse)}
                 />
                 <text x={places.x(last)} y={places.y(rule.relapse) - 4} textAnchor="end">
-                  relapse
+                  {say('relapse')}
                 </text>
               </g>
             )}
@@ -79,7 +86,7 @@ export function CusumChart({ trainee }: { readonly trainee: Trainee }) {
                     y={places.y(rule.relapse / 2)}
                     textAnchor={back > last / 2 ? 'end' : 'start'}
                   >
-                    recovered {startOf(attempts, back)}
+                    {say('recovered {date}', { date: startOf(attempts, back) })}
                   </text>
                 </g>
               ),
@@ -100,21 +107,21 @@ export function CusumChart({ trainee }: { readonly trainee: Trainee }) {
       <ul className={styles.key}>
         <li>
           <i data-key="sum" />
-          towards competence
+          {say('towards competence')}
         </li>
         {watched.length > 0 ? (
           <li>
             <i data-key="relapse" />
-            towards relapse
+            {say('towards relapse')}
           </li>
         ) : null}
         <li>
           <i data-key="right" />
-          correct
+          {say('correct')}
         </li>
         <li>
           <i data-key="wrong" />
-          incorrect
+          {say('incorrect')}
         </li>
       </ul>
     </>

@@ -1,8 +1,9 @@
 import { useState } from 'react';
 import type { MetricFacts, Trainee } from '@/api';
 import { curve, Plane } from '@/charts';
+import { say } from '@/language';
 import { Select } from '@/ui';
-import { formatFigure, formatShare, measureDigits, share, shownUnit, type Share } from '@/units';
+import { formatFigure, formatShare, share, shownUnit, shownValue, type Share } from '@/units';
 import { runningShare } from './standing';
 import styles from './trainees.module.css';
 
@@ -14,10 +15,13 @@ function RightChart({ trainee }: { readonly trainee: Trainee }) {
   const wanted = 1 - rule.adequate;
   return (
     <Plane
-      across={{ title: 'trial', from: 0, to: last }}
-      up={{ title: 'correct, last ten trials, %', from: 0, to: 100 }}
+      across={{ title: say('trial'), from: 0, to: last }}
+      up={{ title: say('correct, last ten trials, %'), from: 0, to: 100 }}
       height_px={230}
-      summary={`Share of correct answers in the last ten trials: ${now === null ? 'too few trials' : formatShare(share(now))} now; ${formatShare(wanted as Share)} is adequate.`}
+      summary={say('Share of correct answers in the last ten trials: {now} now; {wanted} is adequate.', {
+        now: now === null ? say('too few trials') : formatShare(share(now)),
+        wanted: formatShare(wanted as Share),
+      })}
       data={{
         name: `${trainee.trainee} correct answers`,
         columns: ['trial', 'correct', 'share_of_last_ten'],
@@ -29,7 +33,7 @@ function RightChart({ trainee }: { readonly trainee: Trainee }) {
           <g className={styles.threshold}>
             <line x1={places.x(0)} x2={places.x(last)} y1={places.y(100 * wanted)} y2={places.y(100 * wanted)} />
             <text x={places.x(0) + 4} y={places.y(100 * wanted) - 4}>
-              adequate
+              {say('adequate')}
             </text>
           </g>
           <path
@@ -58,9 +62,7 @@ function RightChart({ trainee }: { readonly trainee: Trainee }) {
 function ScoreChart({ trainee, metric }: { readonly trainee: Trainee; readonly metric: MetricFacts }) {
   const points = trainee.attempts.flatMap(({ number, scores }) => {
     const value = scores[metric.id];
-    return value === null || value === undefined
-      ? []
-      : [{ number, value, shown: Number(measureDigits(value, metric.unit).replaceAll(/[^\d.-]/g, '')) }];
+    return value === null || value === undefined ? [] : [{ number, value, shown: shownValue(value, metric.unit) }];
   });
   const fit = trainee.scores.find(({ score }) => score === metric.id);
   const last = Math.max(trainee.attempts.length, 1);
@@ -75,14 +77,14 @@ function ScoreChart({ trainee, metric }: { readonly trainee: Trainee; readonly m
   return (
     <>
       <Plane
-        across={{ title: 'trial', from: 0, to: last }}
+        across={{ title: say('trial'), from: 0, to: last }}
         up={{
-          title: `${metric.label}${shownUnit(metric.unit) === '' ? '' : `, ${shownUnit(metric.unit)}`}`,
+          title: `${say(metric.label)}${shownUnit(metric.unit) === '' ? '' : `, ${shownUnit(metric.unit)}`}`,
           from: least,
           to: most * 1.08,
         }}
         height_px={230}
-        summary={`${metric.label} over ${points.length} trials.${ratio === undefined ? '' : ` Each doubling of the number of trials reduces it to ${formatShare(share(ratio))}.`}`}
+        summary={`${say('{metric} over {count} trials.', { metric: say(metric.label), count: points.length })}${ratio === undefined ? '' : ` ${say('Each doubling of the number of trials reduces it to {share}.', { share: formatShare(share(ratio)) })}`}`}
         data={{
           name: `${trainee.trainee} ${metric.label}`,
           columns: ['trial', `${metric.id}_in_${metric.unit === '1' ? 'ones' : metric.unit}`],
@@ -101,7 +103,10 @@ function ScoreChart({ trainee, metric }: { readonly trainee: Trainee; readonly m
       <p className={styles.muted}>
         {ratio === undefined
           ? (fit?.note ?? '')
-          : `Each doubling of the number of trials reduces it to ${formatShare(share(ratio))} (p = ${formatFigure(fit?.rate_p ?? null, '', 2)}), adjusted for scenario.`}
+          : say('Each doubling of the number of trials reduces it to {share} (p = {p}), adjusted for scenario.', {
+              share: formatShare(share(ratio)),
+              p: formatFigure(fit?.rate_p ?? null, '', 2),
+            })}
       </p>
     </>
   );
@@ -122,12 +127,12 @@ export function LearningChart({
     <div className={styles.stack}>
       <div className={styles.pick}>
         <Select
-          label={<span className="hidden-visually">Measure</span>}
+          label={<span className="hidden-visually">{say('Measure')}</span>}
           value={picked}
           onChange={(event) => setPicked(event.target.value)}
           options={[
-            { value: 'right', text: 'Correct answers' },
-            ...known.map(({ id, label }) => ({ value: id, text: label })),
+            { value: 'right', text: say('Correct answers') },
+            ...known.map(({ id, label }) => ({ value: id, text: say(label) })),
           ]}
         />
       </div>

@@ -2,6 +2,7 @@
 import { useQuery } from '@tanstack/react-query';
 import { lazy } from 'react';
 import { sessionQuery } from '@/api';
+import { marked } from '@/language';
 import type { Feature } from '@/ui';
 
 const index = () => import('./index');
@@ -17,8 +18,8 @@ function OwnPage() {
 
 export const feature: Feature = {
   menu: [
-    { to: '/trainees', name: 'Trainees', roles: ['admin', 'director', 'faculty'], order: 60 },
-    { to: '/me', name: 'My progress', roles: ['trainee'], order: 70 },
+    { to: '/trainees', name: marked('Trainees'), roles: ['admin', 'director', 'faculty'], order: 60 },
+    { to: '/me', name: marked('My progress'), roles: ['trainee'], order: 70 },
   ],
   pages: [
     { path: '/cohorts', show: () => <CohortsPage /> },

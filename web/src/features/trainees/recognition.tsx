@@ -1,5 +1,6 @@
 import type { CalibrationBin, Trainee } from '@/api';
 import { Plane } from '@/charts';
+import { marked, say } from '@/language';
 import { Badge, Scroll } from '@/ui';
 import { formatCount, formatShare, kNone } from '@/units';
 import styles from './trainees.module.css';
@@ -17,20 +18,25 @@ export function Whisker({ value, low, high }: { readonly value: number; readonly
 
 const kTone: Record<string, 'good' | 'bad' | 'neutral'> = { strength: 'good', weakness: 'bad' };
 
+const kVerdicts: Readonly<Record<string, string>> = {
+  strength: marked('strength'),
+  weakness: marked('weakness'),
+};
+
 /** Correct answers by scenario, each with its interval. */
 export function ByScenario({ trainee }: { readonly trainee: Trainee }) {
   return (
-    <Scroll label="Correct answers by scenario">
+    <Scroll label={say('Correct answers by scenario')}>
       <table className={styles.table}>
-        <caption className="hidden-visually">Correct answers by scenario</caption>
+        <caption className="hidden-visually">{say('Correct answers by scenario')}</caption>
         <thead>
           <tr>
-            <th scope="col">Scenario</th>
+            <th scope="col">{say('Scenario')}</th>
             <th scope="col" className={styles.number}>
-              Correct
+              {say('Correct')}
             </th>
-            <th scope="col">Share with 95 % interval</th>
-            <th scope="col">Assessment</th>
+            <th scope="col">{say('Share with 95 % interval')}</th>
+            <th scope="col">{say('Assessment')}</th>
           </tr>
         </thead>
         <tbody>
@@ -38,7 +44,7 @@ export function ByScenario({ trainee }: { readonly trainee: Trainee }) {
             <tr key={one.scenario}>
               <th scope="row">{one.scenario}</th>
               <td className={styles.number}>
-                {formatCount(one.right)} of {formatCount(one.trials)}
+                {say('{right} of {trials}', { right: formatCount(one.right), trials: formatCount(one.trials) })}
               </td>
               <td>
                 {one.share === undefined ? (
@@ -54,7 +60,7 @@ export function ByScenario({ trainee }: { readonly trainee: Trainee }) {
                 )}
               </td>
               <td>
-                <Badge tone={kTone[one.verdict] ?? 'neutral'}>{one.verdict}</Badge>
+                <Badge tone={kTone[one.verdict] ?? 'neutral'}>{say(kVerdicts[one.verdict] ?? one.verdict)}</Badge>
               </td>
             </tr>
           ))}
@@ -66,16 +72,22 @@ export function ByScenario({ trainee }: { readonly trainee: Trainee }) {
 
 /** Stated confidence against the share of correct answers. */
 export function Calibration({ bins }: { readonly bins: readonly CalibrationBin[] }) {
-  if (bins.length === 0) return <p className={styles.muted}>The answers contain no confidence.</p>;
+  if (bins.length === 0) return <p className={styles.muted}>{say('The answers contain no confidence.')}</p>;
   const summary = bins
-    .map((bin) => `stated ${formatShare(bin.stated)}: ${formatCount(bin.right)} of ${formatCount(bin.trials)} correct`)
+    .map((bin) =>
+      say('stated {stated}: {right} of {trials} correct', {
+        stated: formatShare(bin.stated),
+        right: formatCount(bin.right),
+        trials: formatCount(bin.trials),
+      }),
+    )
     .join('; ');
   return (
     <Plane
-      across={{ title: 'stated confidence, %', from: 40, to: 100 }}
-      up={{ title: 'correct, %', from: 0, to: 100 }}
+      across={{ title: say('stated confidence, %'), from: 40, to: 100 }}
+      up={{ title: say('correct, %'), from: 0, to: 100 }}
       height_px={230}
-      summary={`Calibration of confidence: ${summary}.`}
+      summary={say('Calibration of confidence: {summary}.', { summary })}
       data={{
         name: 'calibration of confidence',
         columns: ['stated_confidence', 'correct', 'trials', 'wilson_low', 'wilson_high'],

@@ -1,6 +1,7 @@
 import { useQuery } from '@tanstack/react-query';
 import { Link } from 'wouter';
 import { ApiError, metricsQuery, sessionQuery, traineeQuery, type Attempt, type Trainee } from '@/api';
+import { say } from '@/language';
 import { Badge, Button, Card, DataTable, Facts, Notice, Skeleton, Term, useTitle } from '@/ui';
 import { formatCount, formatDateTime, formatShare } from '@/units';
 import { CusumChart } from './cusum-chart';
@@ -12,20 +13,23 @@ import { kCalibration, kCusum, kInterval, kRelapse, kStateLabels } from './terms
 function Head({ trainee }: { readonly trainee: Trainee }) {
   const state = kStateLabels[trainee.state];
   return (
-    <Card title="Summary" aside={<Badge tone={state.tone}>{state.label}</Badge>}>
+    <Card title={say('Summary')} aside={<Badge tone={state.tone}>{say(state.label)}</Badge>}>
       <div className={styles.stack}>
         <Facts
           facts={[
             {
-              name: <Term definition={kInterval}>Correct answers</Term>,
+              name: <Term definition={say(kInterval)}>{say('Correct answers')}</Term>,
               value: (
                 <strong className={styles.big}>
-                  {formatCount(trainee.right)} of {formatCount(trainee.trials)}
+                  {say('{right} of {trials}', {
+                    right: formatCount(trainee.right),
+                    trials: formatCount(trainee.trials),
+                  })}
                 </strong>
               ),
             },
             {
-              name: 'Share',
+              name: say('Share'),
               value: (
                 <>
                   <strong className={styles.big}>{formatShare(trainee.share)}</strong>{' '}
@@ -37,15 +41,19 @@ function Head({ trainee }: { readonly trainee: Trainee }) {
             },
             ...(trainee.next.scenario === ''
               ? []
-              : [{ name: 'Next case', value: <strong>{trainee.next.scenario}</strong> }]),
-            { name: 'Last trial', value: formatDateTime(trainee.last_utc_us) },
+              : [{ name: say('Next case'), value: <strong>{trainee.next.scenario}</strong> }]),
+            { name: say('Last trial'), value: formatDateTime(trainee.last_utc_us) },
           ]}
         />
         <p>
-          {state.description} {trainee.certified ? 'Competence can be certified: ' : 'Competence cannot be certified: '}
-          {trainee.why}.
+          {say(state.description)}{' '}
+          {trainee.certified
+            ? say('Competence can be certified: {why}.', { why: trainee.why })
+            : say('Competence cannot be certified: {why}.', { why: trainee.why })}
         </p>
-        {trainee.next.why === '' ? null : <p className={styles.muted}>Next: {trainee.next.why}.</p>}
+        {trainee.next.why === '' ? null : (
+          <p className={styles.muted}>{say('Next: {why}.', { why: trainee.next.why })}</p>
+        )}
       </div>
     </Card>
   );
@@ -53,16 +61,16 @@ function Head({ trainee }: { readonly trainee: Trainee }) {
 
 function Attempts({ trainee, mayOpen }: { readonly trainee: Trainee; readonly mayOpen: boolean }) {
   return (
-    <Card title="Trials" className={styles.unprinted ?? ''}>
+    <Card title={say('Trials')} className={styles.unprinted ?? ''}>
       <DataTable<Attempt>
-        caption="Trials"
-        order="newest first"
+        caption={say('Trials')}
+        order={say('newest first')}
         rows={[...trainee.attempts].reverse()}
         keyOf={({ number }) => String(number)}
-        empty="No trials."
+        empty={say('No trials.')}
         columns={[
           {
-            name: 'Trial',
+            name: say('Trial'),
             by: (one) => one.number,
             cell: (one) =>
               mayOpen && one.trial !== null ? (
@@ -72,20 +80,20 @@ function Attempts({ trainee, mayOpen }: { readonly trainee: Trainee; readonly ma
               ),
           },
           {
-            name: 'Started',
+            name: say('Started'),
             by: (one) => one.started_utc_us ?? 0,
-            cell: (one) => (one.started_utc_us === null ? 'rated blind' : formatDateTime(one.started_utc_us)),
+            cell: (one) => (one.started_utc_us === null ? say('rated blind') : formatDateTime(one.started_utc_us)),
           },
-          { name: 'Scenario', by: (one) => one.scenario, cell: (one) => one.scenario },
+          { name: say('Scenario'), by: (one) => one.scenario, cell: (one) => one.scenario },
           {
-            name: 'Answer',
+            name: say('Answer'),
             by: (one) => one.correct,
             cell: (one) => (
-              <Badge tone={one.correct ? 'good' : 'bad'}>{one.correct ? '✓ correct' : '✗ incorrect'}</Badge>
+              <Badge tone={one.correct ? 'good' : 'bad'}>{one.correct ? say('✓ correct') : say('✗ incorrect')}</Badge>
             ),
           },
           {
-            name: 'Confidence',
+            name: say('Confidence'),
             cell: (one) => (one.confidence === null ? '–' : formatShare(one.confidence)),
             number: true,
           },
@@ -106,7 +114,7 @@ export function TraineePage({ name }: { readonly name: string }) {
   const back =
     role === 'trainee' ? null : (
       <p className={styles.back}>
-        <Link href="/trainees">← Trainees</Link>
+        <Link href="/trainees">← {say('Trainees')}</Link>
       </p>
     );
   if (query.isError) {
@@ -115,13 +123,13 @@ export function TraineePage({ name }: { readonly name: string }) {
       <div className={styles.page}>
         {back}
         {missing ? (
-          <Notice title={role === 'trainee' ? 'No results yet.' : 'No scored trials for this name.'}>
+          <Notice title={role === 'trainee' ? say('No results yet.') : say('No scored trials for this name.')}>
             {role === 'trainee'
-              ? 'Your progress appears here after your trials are scored and the results are released.'
-              : 'Check the address. The trials may not be scored yet.'}
+              ? say('Your progress appears here after your trials are scored and the results are released.')
+              : say('Check the address. The trials may not be scored yet.')}
           </Notice>
         ) : (
-          <Notice tone="bad" title="The page could not be loaded." onRetry={() => void query.refetch()}>
+          <Notice tone="bad" title={say('The page could not be loaded.')} onRetry={() => void query.refetch()}>
             {query.error.message}
           </Notice>
         )}
@@ -143,33 +151,33 @@ export function TraineePage({ name }: { readonly name: string }) {
       {back}
       <div className={styles.head}>
         <h1>
-          {trainee.trainee} {trainee.simulated ? <Badge tone="warn">simulated</Badge> : null}
+          {trainee.trainee} {trainee.simulated ? <Badge tone="warn">{say('simulated')}</Badge> : null}
         </h1>
-        <Button onClick={() => window.print()}>Print this page</Button>
+        <Button onClick={() => window.print()}>{say('Print this page')}</Button>
       </div>
       <Head trainee={trainee} />
       <div className={styles.two}>
-        <Card title="Learning">
+        <Card title={say('Learning')}>
           <LearningChart trainee={trainee} metrics={metrics} />
         </Card>
         <Card
-          title="Competence"
+          title={say('Competence')}
           aside={
-            <Term align="end" definition={`${kCusum} ${kRelapse}`}>
-              how to read this chart
+            <Term align="end" definition={`${say(kCusum)} ${say(kRelapse)}`}>
+              {say('how to read this chart')}
             </Term>
           }
         >
           <CusumChart trainee={trainee} />
         </Card>
-        <Card title="Recognition by scenario">
+        <Card title={say('Recognition by scenario')}>
           <ByScenario trainee={trainee} />
         </Card>
         <Card
-          title="Confidence"
+          title={say('Confidence')}
           aside={
-            <Term align="end" definition={kCalibration}>
-              how to read this chart
+            <Term align="end" definition={say(kCalibration)}>
+              {say('how to read this chart')}
             </Term>
           }
         >

@@ -1,5 +1,6 @@
 import { useQuery } from '@tanstack/react-query';
 import { trialsAsked, trialsQuery, useSavedViews } from '@/api';
+import { say } from '@/language';
 import { Notice, useList, useTitle } from '@/ui';
 import { formatCount } from '@/units';
 import styles from './trials-page.module.css';
@@ -7,7 +8,7 @@ import { TrialsTable } from './trials-table';
 
 /** Trials, searched, sorted and handed out page by page by the server; what is shown is in the address. */
 export function TrialsPage() {
-  useTitle('Trials');
+  useTitle(say('Trials'));
   const list = useList(trialsAsked);
   const query = useQuery(trialsQuery(list.query));
   const views = useSavedViews('trials');
@@ -16,13 +17,13 @@ export function TrialsPage() {
   return (
     <>
       <div className={styles.head}>
-        <h1>Trials</h1>
+        <h1>{say('Trials')}</h1>
       </div>
       {query.isError ? (
         <div className={styles.error}>
           <Notice
             tone="bad"
-            title={trials ? 'The list could not be refreshed.' : 'The trials could not be loaded.'}
+            title={trials ? say('The list could not be refreshed.') : say('The trials could not be loaded.')}
             onRetry={() => void query.refetch()}
           >
             {query.error.message}
@@ -35,7 +36,9 @@ export function TrialsPage() {
           page={query.data}
           list={list}
           views={views}
-          remark={assessing > 0 ? `, ${formatCount(assessing)} on this page being assessed` : ''}
+          remark={
+            assessing > 0 ? `, ${say('{count} on this page being assessed', { count: formatCount(assessing) })}` : ''
+          }
         />
       ) : null}
     </>

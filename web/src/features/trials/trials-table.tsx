@@ -1,36 +1,37 @@
 import type { ComponentProps } from 'react';
 import { Link } from 'wouter';
 import { personOf, type TrialSummary } from '@/api';
+import { marked, say } from '@/language';
 import { Badge, ListTable, type ListColumn, type ListFilter } from '@/ui';
 import { formatDateTime, formatDuration, isoDateTime } from '@/units';
 import styles from './trials-table.module.css';
 
 function AnswerCell({ trial }: { readonly trial: TrialSummary }) {
-  if (trial.correct === true) return <Badge tone="good">✓ correct</Badge>;
-  if (trial.correct === false) return <Badge tone="bad">✗ incorrect</Badge>;
-  return <span className={styles.none}>{trial.state === 'assessed' ? 'none' : '–'}</span>;
+  if (trial.correct === true) return <Badge tone="good">{say('✓ correct')}</Badge>;
+  if (trial.correct === false) return <Badge tone="bad">{say('✗ incorrect')}</Badge>;
+  return <span className={styles.none}>{trial.state === 'assessed' ? say('none') : '–'}</span>;
 }
 
 function StateCell({ trial }: { readonly trial: TrialSummary }) {
   switch (trial.state) {
     case 'assessing':
-      return <Badge tone="accent">assessing…</Badge>;
+      return <Badge tone="accent">{say('assessing…')}</Badge>;
     case 'failed':
-      return <Badge tone="bad">failed</Badge>;
+      return <Badge tone="bad">{say('failed')}</Badge>;
     case 'assessed':
-      return <span className={styles.none}>assessed</span>;
+      return <span className={styles.none}>{say('assessed')}</span>;
   }
 }
 
 const kColumns: readonly ListColumn<TrialSummary>[] = [
   {
-    name: 'Started',
+    name: marked('Started'),
     sort: 'started',
     falls: true,
     cell: (trial) => <time dateTime={isoDateTime(trial.started_utc_us)}>{formatDateTime(trial.started_utc_us)}</time>,
   },
   {
-    name: 'Case',
+    name: marked('Case'),
     sort: 'case',
     cell: (trial) => (
       <Link href={`/trials/${encodeURIComponent(trial.id)}`} className={styles.link}>
@@ -39,37 +40,37 @@ const kColumns: readonly ListColumn<TrialSummary>[] = [
     ),
   },
   {
-    name: 'Person',
+    name: marked('Person'),
     sort: 'person',
     cell: (trial) => (
       <span className={styles.operator}>
         {personOf(trial)}
-        {trial.simulated ? <Badge tone="warn">simulated</Badge> : null}
+        {trial.simulated ? <Badge tone="warn">{say('simulated')}</Badge> : null}
       </span>
     ),
   },
-  { name: 'Station', sort: 'station', cell: (trial) => trial.station },
-  { name: 'Duration', sort: 'duration', cell: (trial) => formatDuration(trial.duration_s), number: true },
-  { name: 'Answer', cell: (trial) => <AnswerCell trial={trial} /> },
-  { name: 'State', cell: (trial) => <StateCell trial={trial} /> },
+  { name: marked('Station'), sort: 'station', cell: (trial) => trial.station },
+  { name: marked('Duration'), sort: 'duration', cell: (trial) => formatDuration(trial.duration_s), number: true },
+  { name: marked('Answer'), cell: (trial) => <AnswerCell trial={trial} /> },
+  { name: marked('State'), cell: (trial) => <StateCell trial={trial} /> },
 ];
 
 const kFilters: readonly ListFilter[] = [
   {
     name: 'answer',
-    label: 'Answer',
+    label: marked('Answer'),
     choices: [
-      { value: 'correct', text: 'correct' },
-      { value: 'incorrect', text: 'incorrect' },
-      { value: 'none', text: 'no answer' },
+      { value: 'correct', text: marked('correct') },
+      { value: 'incorrect', text: marked('incorrect') },
+      { value: 'none', text: marked('no answer') },
     ],
   },
   {
     name: 'state',
-    label: 'State',
+    label: marked('State'),
     choices: [
-      { value: 'assessing', text: 'being assessed' },
-      { value: 'failed', text: 'failed' },
+      { value: 'assessing', text: marked('being assessed') },
+      { value: 'failed', text: marked('failed') },
     ],
   },
 ];
@@ -85,15 +86,15 @@ export function TrialsTable({ trials, remark = '', ...rest }: Props) {
   return (
     <ListTable<TrialSummary>
       {...rest}
-      caption="Trials"
+      caption={say('Trials')}
       className={styles.frame}
       rows={trials}
       keyOf={({ id }) => id}
-      empty="No trials yet. A trial appears here after a station has uploaded it completely."
+      empty={say('No trials yet. A trial appears here after a station has uploaded it completely.')}
       waiting={8}
       columns={kColumns}
       usual="started"
-      searchLabel="Find by person, case or station"
+      searchLabel={say('Find by person, case or station')}
       filters={kFilters}
       remark={remark}
     />

@@ -1,0 +1,16 @@
+export {
+  kLanguageNames,
+  kLanguages,
+  kLocales,
+  language,
+  locale,
+  marked,
+  onLanguage,
+  say,
+  speak,
+  type Language,
+  type Values,
+} from './language';
+export { chooseLanguage, preferredLanguage, readLanguage } from './preference';
+export { Sentence } from './sentence';
+export { useLanguage } from './use-language';
