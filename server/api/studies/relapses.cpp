@@ -23,7 +23,8 @@ core::Result<std::vector<SignalledRelapse>> signalled_relapses(Backend& backend)
   const Call call{backend, request, caller, {}, Scope::all};
   const auto programme = TRY(programme_of(call));
   std::vector<SignalledRelapse> out;
-  for (const core::Json& one : list_json(programme)["trainees"]) {
+  const core::Json list = list_json(programme);
+  for (const core::Json& one : list["trainees"]) {
     if (one["state"] != "relapsed") continue;
     const auto name = one["trainee"].get<std::string>();
     const auto at = std::ranges::find(programme.cohort.trainees, name);

@@ -8,6 +8,8 @@
 #include <functional>
 #include <random>
 
+#include "lab/identify/effect_screen.hpp"
+
 namespace tractus {
 namespace lab {
 namespace {
