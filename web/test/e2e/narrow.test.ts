@@ -36,6 +36,7 @@ it.runIf(inject('fixture'))('no page is wider than a screen of 390 px', async ()
     '/account',
     '/account/tokens',
     '/network/tokens',
+    '/guide/first-week',
     '/guide/scripts',
   ]) {
     await page.goto(address);

@@ -1,15 +1,15 @@
 import { Card } from '@/ui';
 import { kFirstWeek } from './first-week';
 import styles from './guide.module.css';
-import { Steps } from './steps';
+import { isMade, Steps } from './steps';
 
 /** A residency's first week, day by day. */
 export function FirstWeekPage() {
   return (
     <>
       <p className={styles.for}>
-        A residency’s first week: 24 residents, two kiosks, one certificate. Every picture was made by a program on a
-        real server with simulated hands.
+        A residency’s first week: 24 residents, two kiosks, one certificate.
+        {isMade('week-import') ? ' The pictures were made by a program, on a real server with simulated hands.' : null}
       </p>
       {kFirstWeek.map(({ name, steps }) => (
         <Card key={name} title={name}>

@@ -6,6 +6,8 @@ import type { Step } from './pages';
 const kMade = import.meta.glob<string>('./pictures/*.jpg', { eager: true, query: '?url', import: 'default' });
 const addressOf = (name: string | undefined) => (name === undefined ? undefined : kMade[`./pictures/${name}.jpg`]);
 
+export const isMade = (name: string) => addressOf(name) !== undefined;
+
 /** Steps in order, each with its picture. */
 export function Steps({ of }: { readonly of: readonly Step[] }) {
   return (
