@@ -31,7 +31,7 @@ function Pad({ onDigit, onDelete, onEnter, ready, enter }: PadProps) {
       <Button className={styles.key} onClick={() => onDigit('0')}>
         0
       </Button>
-      <Button className={styles.key} look="solid" disabled={!ready} onClick={onEnter}>
+      <Button className={`${styles.key} ${styles.enter}`} look="solid" disabled={!ready} onClick={onEnter}>
         {enter}
       </Button>
     </div>

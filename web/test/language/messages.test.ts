@@ -1,5 +1,7 @@
 // @vitest-environment node
-import { readFileSync } from 'node:fs';
+import { readdirSync, readFileSync } from 'node:fs';
+import { join } from 'node:path';
+import { fileURLToPath } from 'node:url';
 import { describe, expect, it } from 'vitest';
 import {
   bareWords,
@@ -33,6 +35,21 @@ describe.each(kTranslations)('the catalogue %s', (language) => {
   it('writes as in Switzerland', () => {
     for (const text of Object.values(whole(language))) expect(text).not.toMatch(/ß|„|“|"/);
   });
+});
+
+it('what is translated of the server’s and the station’s words stands in their sources, in every language', () => {
+  const root = fileURLToPath(new URL('../../../', import.meta.url));
+  const sources = ['shared/metrics', 'server', 'station', 'db']
+    .flatMap((folder) =>
+      readdirSync(join(root, folder), { recursive: true, encoding: 'utf8' })
+        .filter((name) => name.endsWith('.cpp') && !name.endsWith('_test.cpp'))
+        .map((name) => readFileSync(join(root, folder, name), 'utf8')),
+    )
+    .join('\n');
+  const [first = [], ...others] = kTranslations.map((one) => Object.keys(catalogueParts(one).get(kFromServer) ?? {}));
+  expect(first.length).toBeGreaterThan(20);
+  for (const keys of others) expect(keys).toEqual(first);
+  expect(first.filter((sentence) => !sources.includes(JSON.stringify(sentence)))).toEqual([]);
 });
 
 it('every language has the same parts', () => {
