@@ -214,8 +214,8 @@ Result<Diagnosis> diagnose(const Problem& problem, const DiagnoseOptions& option
   if (!selection.refused().empty())
     out.notes.push_back(
         fmt::format("{} would bring the residual to the floor, but what it takes out follows the "
-                    "motion before: "
-                    "something with a slow memory is missing that is in no catalogue",
+                    "motion or the force before: something with a slow memory, or of another size "
+                    "in each trial, is missing that is in no catalogue",
                     selection.refused()));
   if (!selection.instead_of_shifts().empty())
     out.notes.push_back(

@@ -79,7 +79,7 @@ std::vector<Slow> slow_of(const Problem& problem, const Solution& at, std::strin
   return out;
 }
 
-/// Products of squares and products over trials.
+/// Sums of squares and products over trials.
 struct Products {
   Eigen::MatrixXd a;
   Eigen::VectorXd b;
@@ -95,20 +95,34 @@ struct Products {
   double left() const { return squares - b.dot(solve(a, b)); }
 };
 
-/// Takes out of trend and memories what a factor of the trial times the signal makes.
-void take_out_factor_of_trial(std::vector<Slow>& channels) {
-  double square = 0.0, of_trend = 0.0;
-  Eigen::RowVectorXd of_memories = Eigen::RowVectorXd::Zero(channels.front().memories.cols());
-  for (const Slow& slow : channels) {
-    square += slow.now.squaredNorm();
-    of_trend += slow.now.dot(slow.trend);
-    of_memories += slow.now.transpose() * slow.memories;
+constexpr auto kColumns = Eigen::Index(kDrift.memories_s.size()) + 1;
+
+Products products_of(const std::vector<Slow>& channels) {
+  Products out(kColumns);
+  for (const Slow& slow : channels) out.add(slow.memories, slow.trend);
+  return out;
+}
+
+/// Squares of a trial's trends that are left by memories which were fitted to the other trials.
+double left_by_others(const Products& all, const Products& trial) {
+  const Eigen::VectorXd c = solve(all.a - trial.a, all.b - trial.b);
+  return trial.squares - 2.0 * c.dot(trial.b) + c.dot(trial.a * c);
+}
+
+/// Squares of a trial's trends that are left by a factor times the signal, fitted to the other channels of the trial.
+double left_by_factor(const std::vector<Slow>& channels) {
+  double left = 0.0;
+  for (const Slow& judged : channels) {
+    double square = 0.0, product = 0.0;
+    for (const Slow& other : channels) {
+      if (&other == &judged) continue;
+      square += other.now.squaredNorm();
+      product += other.now.dot(other.trend);
+    }
+    const double factor = square > 0.0 ? product / square : 0.0;
+    left += (judged.trend - factor * judged.now).squaredNorm();
   }
-  if (!(square > 0.0)) return;
-  for (Slow& slow : channels) {
-    slow.trend -= slow.now * (of_trend / square);
-    slow.memories -= slow.now * (of_memories / square);
-  }
+  return left;
 }
 
 }  // namespace
@@ -116,18 +130,28 @@ void take_out_factor_of_trial(std::vector<Slow>& channels) {
 double drift_r2_on_motion(const Residual& residual, const Solution& at, std::string_view effect) {
   const Problem& problem = residual.problem();
   if (!contains(at.structure, effect)) return 0.0;
-  const bool by_force = problem.channels().front().components > 0;
-  constexpr auto kColumns = Eigen::Index(kDrift.memories_s.size()) + 1;
-  Products all(kColumns), about_mean(1);
+  std::vector<Products> trials;
+  Products all(kColumns), mean(1);
+  double by_factor = 0.0;
   for (int k = 0; k < problem.trials(); ++k) {
-    std::vector<Slow> channels = slow_of(problem, at, effect, k);
+    const std::vector<Slow> channels = slow_of(problem, at, effect, k);
     if (channels.empty()) return 0.0;
-    for (const Slow& slow : channels) about_mean.add(slow.memories.rightCols(1), slow.trend);
-    if (by_force) take_out_factor_of_trial(channels);
-    for (const Slow& slow : channels) all.add(slow.memories, slow.trend);
+    for (const Slow& slow : channels) mean.add(slow.memories.rightCols(1), slow.trend);
+    by_factor += left_by_factor(channels);
+    trials.push_back(products_of(channels));
+    all.a += trials.back().a;
+    all.b += trials.back().b;
+    all.squares += trials.back().squares;
   }
-  const double trends = about_mean.left();
-  return trends > 0.0 ? std::clamp(1.0 - all.left() / trends, 0.0, 1.0) : 0.0;
+  double left = all.left();
+  if (problem.channels().front().components >
+      0) {  // left out, as a drift has few numbers to tell chance by
+    left = 0.0;
+    for (const Products& trial : trials) left += left_by_others(all, trial);
+    left = std::min(left, by_factor);
+  }
+  const double trends = mean.left();
+  return trends > 0.0 ? std::clamp(1.0 - left / trends, 0.0, 1.0) : 0.0;
 }
 
 }  // namespace lab

@@ -135,7 +135,7 @@ TEST(DriftOnMotion, ASensorThatWandersIsOne) {
     }
     courses.push_back(slow_part(course));
   }
-  // Three memories and a factor in each trial are 9 of its 6 · 6 · 3 = 108 numbers.
+  // Neither other trials nor other axes tell anything of it.
   EXPECT_LT(r2_of([&](int trial, int axis) { return courses[std::size_t(3 * trial + axis)]; }),
             0.3);
 }
