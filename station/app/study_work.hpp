@@ -3,6 +3,7 @@
 
 #include "station/app/options.hpp"
 #include "station/session/study_plan.hpp"
+#include "wire/assigned_work.hpp"
 
 namespace tractus::app {
 
