@@ -137,7 +137,7 @@ endfunction()
 # (deploy/junit.py counts them).
 function(tractus_ctest test program filter timeout_s labels)
   add_test(NAME ${test} COMMAND ${program} --gtest_filter=${filter} --gtest_output=xml:${CMAKE_BINARY_DIR}/reports/${test}.xml)
-  set_tests_properties(${test} PROPERTIES TIMEOUT ${timeout_s} LABELS "${labels}" ${ARGN})
+  set_tests_properties(${test} PROPERTIES TIMEOUT ${timeout_s} COST ${timeout_s} LABELS "${labels}" ${ARGN})  # the longest begin first
 endfunction()
 
 # The whole program once more, as one test, with its servers' records in PostgreSQL (tests/support/database).

@@ -352,9 +352,8 @@ struct DiagnosisSettings {
   double more_per_share = 10.0;
 };
 
-/// From the probability that the comparison of structures makes, p, to the one that is stated, 1/(1 + e^−(offset + slope ln
-/// p/(1 − p))) [Platt1999]. Source: tests/hidden_physics/benchmark/calibration.py, which fits them to all generators but one
-/// and reports on that one.
+/// From the comparison's probability p to the one that is stated, 1/(1 + e^−(offset + slope ln p/(1 − p))) [Platt1999]. 0 and
+/// 1 leave p as it is; tests/hidden_physics/benchmark/calibration.py fits them to all generators but one.
 struct CalibrationSettings {
   /// Of answers that end the matter: complete, missing. Tuned.
   double ended_offset = 0.0;
