@@ -253,13 +253,6 @@ struct SelectionSettings {
   /// Share by which an effect must lower the error on held-out trials, without weights: less is not material, and
   /// small flaws of any motion or sensor make 0.3 to 1 % of it. Bound.
   double least_fall = 0.02;
-  /// Or by this share where it makes most of its difference, in nearly all trials, if that of all samples falls at all. More
-  /// than `least_fall`, since flaws of the motion, too, are greatest in contact. Bound.
-  double least_fall_there = 0.05;
-  /// The samples of greatest difference that hold this share of its squares are where an effect acts. Bound.
-  double most_of_difference = 0.9;
-  /// And at least this share of the samples. Bound.
-  double least_region = 0.05;
   /// A further effect must lower the loss, 2 nats, by so much for each number added. Tuned.
   double clear_loss = 30.0;
   /// Structures of a size that are grown by one effect. Bound.

@@ -7,7 +7,6 @@
 #include <cmath>
 
 #include "lab/identify/fit_report.hpp"
-#include "lab/identify/held_out.hpp"
 #include "lab/identify/residual_dependence.hpp"
 #include "lab/identify/selection.hpp"
 #include "lab/identify/sensitivity.hpp"
@@ -135,20 +134,20 @@ double probability_of_more(const ResidualDependence& rest, const Fit& fit) {
   return 1.0 / (1.0 + std::exp(-odds));
 }
 
+/// Probability that the answer is right as a whole.
 /// See CalibrationSettings.
 double calibrated(double p, double offset, double slope) {
   const double inside = std::clamp(p, 1e-6, 1.0 - 1e-6);
   return 1.0 / (1.0 + std::exp(-(offset + slope * std::log(inside / (1.0 - inside)))));
 }
 
-/// Probability that the answer is right as a whole.
 double stated_probability(const Diagnosis& d, const ResidualDependence& rest, double posterior) {
   const double more =
       std::clamp(std::max(probability_of_more(rest, d.final_fit),
                           d.effects.size() >= kAnswer.imitating_effects ? kAnswer.imitation : 0.0),
                  kSettings.posterior.unforeseen, 1.0 - kSettings.posterior.unforeseen);
-  constexpr const auto& kMap = kSettings.calibration;
   return d.verdict == Verdict::partly || d.verdict == Verdict::unexplained
+  constexpr const auto& kMap = kSettings.calibration;
              ? calibrated(more, kMap.more_is_missing_offset, kMap.more_is_missing_slope)
              : calibrated(posterior * (1.0 - more), kMap.ended_offset, kMap.ended_slope);
 }
@@ -183,7 +182,6 @@ Result<Diagnosis> diagnose(const Problem& problem, const DiagnoseOptions& option
   out.base.noise_floor = std::min(out.base.noise_floor, out.final_fit.noise_floor);
   const bool more = more_is_missing(rest, out.final_fit);
   const bool named = !chosen.structure.effects.empty() &&
-                     out.final_fit.held_out_rmse < out.base_fit.held_out_rmse &&
                      (!more || explain_most(rest, out.base_fit, out.final_fit));
   const bool imitating = named && chosen.structure.effects.size() >= kAnswer.imitating_effects;
   out.verdict = named  ? more || imitating ? Verdict::partly : Verdict::missing
@@ -217,11 +215,6 @@ Result<Diagnosis> diagnose(const Problem& problem, const DiagnoseOptions& option
                     "motion or the force before: something with a slow memory, or of another size "
                     "in each trial, is missing that is in no catalogue",
                     selection.refused()));
-  if (!selection.instead_of_shifts().empty())
-    out.notes.push_back(
-        fmt::format("a constant {} would bring the layers back to where the model has them, and "
-                    "predicts no better than layers that are shifted: record free air to tell",
-                    selection.instead_of_shifts()));
   out.ranking = ranking(residual, selection, posterior);
   if (options.detection_limits)
     add_detection_limits(residual, selection, final, out.final_fit.rmse, out.ranking);

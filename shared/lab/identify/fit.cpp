@@ -2,12 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
 #include "lab/identify/effect_screen.hpp"
 #include "lab/identify/fit_report.hpp"
-#include "lab/identify/held_out.hpp"
 #include "lab/identify/parallel.hpp"
 #include "lab/settings.hpp"
 
@@ -20,6 +20,88 @@ using core::Error;
 using core::Result;
 
 constexpr const auto& kValidation = kSettings.validation;
+
+/// Which residuals a fold holds out.
+struct Fold {
+  int trial;
+  double from_s, to_s;  // of the trial's time at the full rate
+  Eigen::Index first, count;
+};
+
+std::vector<Fold> folds_of(const Residual& residual) {
+  const Problem& problem = residual.problem();
+  std::vector<Fold> out;
+  const int pieces = residual.trials() >= kValidation.fewest_trials
+                         ? 1
+                         : kValidation.stretches / residual.trials();
+  for (int k = 0; k < residual.trials(); ++k) {
+    const Eigen::Index first = residual.offset(k), all = residual.offset(k + 1) - first;
+    for (int p = 0; p < pieces; ++p) {
+      const Eigen::Index from = all * p / pieces, to = all * (p + 1) / pieces;
+      const double length = problem.seconds(k);
+      out.push_back({k, length * p / pieces, length * (p + 1) / pieces, first + from, to - from});
+    }
+  }
+  return out;
+}
+
+/// Values without a fold: one step of Newton's from the whole's, in the directions that the rest
+/// informs too. (A number that one trial alone informs, as a layer that only it entered, cannot be
+/// predicted from the others; it stays. So does the place of a border: the loss has no slope in it,
+/// and every trial that crosses it tells it alike.)
+std::vector<double> without(const Solution& at, const Gram& whole, const Gram& fold) {
+  std::vector<double> values = at.values;
+  std::vector<Eigen::Index> moved;
+  for (std::size_t k = 0; k < values.size(); ++k)
+    if (!(at.parameters[k].rough > 0.0)) moved.push_back(Eigen::Index(k));
+  if (moved.empty()) return values;
+  const Eigen::MatrixXd all = whole.a(moved, moved), part = fold.a(moved, moved);
+  const Eigen::VectorXd unit = all.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+  Eigen::MatrixXd a = unit.asDiagonal() * all * unit.asDiagonal();
+  a.diagonal().array() += 1e-12;
+  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> eigen(
+      unit.asDiagonal() * part * unit.asDiagonal(), a);
+  Eigen::VectorXd along = eigen.eigenvectors().transpose() * (unit.asDiagonal() * fold.b(moved));
+  for (Eigen::Index k = 0; k < along.size(); ++k) {
+    const double share = eigen.eigenvalues()(k);  // of what is known of this direction
+    along(k) = share > kValidation.most_of_one_fold ? 0.0 : along(k) / (1.0 - share);
+  }
+  const Eigen::VectorXd step = unit.asDiagonal() * (eigen.eigenvectors() * along);
+  for (std::size_t i = 0; i < moved.size(); ++i) {
+    const auto k = std::size_t(moved[i]);
+    const Parameter& p = at.parameters[k];
+    values[k] =
+        std::clamp(value_at(p, coordinate(p, values[k]) + step(Eigen::Index(i))), p.low, p.high);
+  }
+  return values;
+}
+
+struct Squares {
+  double judged = 0.0, count = 0.0;
+  std::vector<double> channels;
+};
+
+/// Sums of squares of the judged samples between two times of a trial.
+Squares squares(const ResidualModel& model, const Structure& structure,
+                std::span<const double> values, int trial, double from_s, double to_s) {
+  const Residuals r = model.full_rate(structure, values, trial);
+  Squares out;
+  out.channels.assign(r.channels.size(), 0.0);
+  for (std::size_t k = 0; k < r.t_s.size(); ++k) {
+    const double t = r.t_s[k] - r.t_s.front();
+    if (t < from_s || t > to_s || r.judgement[k] != Judgement::judged) continue;
+    for (std::size_t c = 0; c < r.channels.size(); ++c)
+      out.channels[c] += r.channels[c][k] * r.channels[c][k];
+    out.judged += r.channels[0][k] * r.channels[0][k];
+    out.count += 1.0;
+  }
+  return out;
+}
+
+/// NaN of nothing: an error that nobody could judge is not 0.
+double root_mean(double sum, double count) {
+  return count > 0.0 ? std::sqrt(sum / count) : std::numeric_limits<double>::quiet_NaN();
+}
 
 /// Variances of the numbers from how far the trials (or stretches of time) disagree on them, which
 /// counts what neighbouring residuals have in common: the cluster-robust estimate of [Liang1986],
@@ -79,18 +161,18 @@ void inform(const Residual& residual, const Solution& at, const Eigen::VectorXd&
                                           fit.correlation(k, j)));
 }
 
-void hold_out(const Residual& residual, const Solution& at, Fit& fit) {
+void hold_out(const Residual& residual, const Solution& at, const Gram& whole,
+              const Eigen::VectorXd& weights, Fit& fit) {
   const Problem& problem = residual.problem();
   const auto folds = folds_of(residual);
   fit.folds = residual.trials() >= kValidation.fewest_trials ? "trials" : "stretches of time";
   fit.trial_score.resize(Eigen::Index(folds.size()));
-  const LeftOut left_out(residual, at);
   std::vector<Squares> held(folds.size());
   parallel(int(folds.size()), residual.threads(), [&](int f) {
     const Fold& fold = folds[std::size_t(f)];
-    const auto values = left_out.values(fold);
+    const auto values = without(at, whole, gram(at, weights, fold.first, fold.count));
     held[std::size_t(f)] =
-        squares_between(problem, at.structure, values, fold.trial, fold.from_s, fold.to_s);
+        squares(problem, at.structure, values, fold.trial, fold.from_s, fold.to_s);
     Eigen::VectorXd r(problem.residual_size(fold.trial));
     problem.residuals(at.structure, values, fold.trial, r);
     fit.trial_score(f) =
@@ -126,7 +208,7 @@ Fit report(const Residual& residual, Solution& at, bool held_out) {
   inform(residual, at, weights, whole, fit);
   std::vector<Squares> sums(std::size_t(residual.trials()));
   parallel(residual.trials(), residual.threads(), [&](int k) {
-    sums[std::size_t(k)] = squares_between(problem, at.structure, at.values, k, -1.0, 1e18);
+    sums[std::size_t(k)] = squares(problem, at.structure, at.values, k, -1.0, 1e18);
   });
   Squares total;
   total.channels.assign(problem.channels().size(), 0.0);
@@ -140,8 +222,64 @@ Fit report(const Residual& residual, Solution& at, bool held_out) {
   fit.rmse = root_mean(total.judged, total.count);
   for (const double c : total.channels) fit.channel_rmse.push_back(root_mean(c, total.count));
   fit.held_out_rmse = std::numeric_limits<double>::quiet_NaN();
-  if (held_out) hold_out(residual, at, fit);
+  if (held_out) hold_out(residual, at, whole, weights, fit);
   return fit;
+}
+
+double held_out_rmse(const Residual& residual, const Solution& at) {
+  const Eigen::VectorXd weights = robust_weights(at.residual, at.scale);
+  Gram whole = gram(at, weights, 0, residual.size());
+  add_prior(at, whole);
+  Fit fit;
+  fit.trials.resize(std::size_t(residual.trials()));
+  hold_out(residual, at, whole, weights, fit);
+  return fit.held_out_rmse;
+}
+
+const Eigen::VectorXd& held_out_squares(const Residual& residual, const Solution& at) {
+  if (at.held_out_squares.size() > 0) return at.held_out_squares;
+  const auto folds = folds_of(residual);
+  const Eigen::VectorXd weights = robust_weights(at.residual, at.scale);
+  Gram whole = gram(at, weights, 0, residual.size());
+  add_prior(at, whole);
+  Eigen::VectorXd out(folds.size());
+  parallel(int(folds.size()), residual.threads(), [&](int f) {
+    const Fold& fold = folds[std::size_t(f)];
+    const auto values = without(at, whole, gram(at, weights, fold.first, fold.count));
+    const Squares s =
+        squares(residual.problem(), at.structure, values, fold.trial, fold.from_s, fold.to_s);
+    out(f) = s.count > 0.0 ? s.judged / s.count : std::numeric_limits<double>::quiet_NaN();
+  });
+  at.held_out_squares = std::move(out);
+  return at.held_out_squares;
+}
+
+Eigen::VectorXd held_out_losses(const Residual& residual, const Solution& at, double scale) {
+  const auto folds = folds_of(residual);
+  const Eigen::VectorXd weights = robust_weights(at.residual, at.scale);
+  Gram whole = gram(at, weights, 0, residual.size());
+  add_prior(at, whole);
+  Eigen::VectorXd out(folds.size());
+  parallel(int(folds.size()), residual.threads(), [&](int f) {
+    const Fold& fold = folds[std::size_t(f)];
+    const auto values = without(at, whole, gram(at, weights, fold.first, fold.count));
+    Eigen::VectorXd step(at.values.size());
+    for (std::size_t k = 0; k < at.values.size(); ++k)
+      step(Eigen::Index(k)) =
+          coordinate(at.parameters[k], values[k]) - coordinate(at.parameters[k], at.values[k]);
+    const Eigen::Index begin = residual.offset(fold.trial),
+                       all = residual.offset(fold.trial + 1) - begin;
+    Eigen::VectorXd trial =
+        at.residual.segment(begin, all) + at.jacobian.middleRows(begin, all) * step;
+    residual.problem().leave_stretches_out(at.structure, fold.trial, kValidation.stretches_of_trial,
+                                           trial);
+    const auto here = at.residual.segment(fold.first, fold.count);
+    const Eigen::VectorXd there = trial.segment(fold.first - begin, fold.count);
+    // Exactly 0 is that of which the structure says nothing (dry friction at rest).
+    const auto judged = (here.array() != 0.0).eval();
+    out(f) = robust_loss(judged.select(there, 0.0), scale) / std::max(1.0, double(judged.count()));
+  });
+  return out;
 }
 
 Solution fit_base(const Residual& residual, const Structure& structure) {

@@ -13,4 +13,16 @@ Solution fit_base(const Residual& residual, const Structure& structure = {});
 /// What is told of a solution; differentiates it anew.
 Fit report(const Residual& residual, Solution& solution, bool held_out);
 
+/// The held-out rmse alone, by the jacobian that the solution has.
+double held_out_rmse(const Residual& residual, const Solution& solution);
+
+/// Of each fold the mean square of the primary's judged samples, without weights, that a fit of the others leaves, by the
+/// jacobian that the solution has when it is first asked; NaN where nothing is judged.
+const Eigen::VectorXd& held_out_squares(const Residual& residual, const Solution& solution);
+
+/// Of each fold (trial, or stretch of one) what a fit of the others leaves there: the mean of Huber's loss at `scale` over what
+/// the structure judges, by the jacobian that the solution has. What is free in each trial is fitted to the trial's other
+/// stretches.
+Eigen::VectorXd held_out_losses(const Residual& residual, const Solution& solution, double scale);
+
 }  // namespace tractus::lab

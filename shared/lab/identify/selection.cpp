@@ -7,6 +7,7 @@
 #include <cmath>
 #include <set>
 
+#include "lab/identify/drift_on_motion.hpp"
 #include "lab/identify/fit_report.hpp"
 #include "lab/identify/structure_posterior.hpp"
 #include "lab/settings.hpp"
@@ -128,11 +129,6 @@ void Selection::singles() {
   }
 }
 
-Solution Selection::differentiated(Solution at) const {
-  differentiate(residual_, at);
-  return at;
-}
-
 void Selection::refine(std::size_t effects) {
   for (const Solution* s : best_of(effects, kSelection.refined)) {
     Solution& at = tried_[name(s->structure)];
@@ -228,6 +224,84 @@ void Selection::choose() {
   } while (simplified.insert(chosen_).second && go_on(0.9));
 }
 
+/// A trend that is free in every trial can stand in for any slow law. Where it follows the motion
+/// it is no sensor's: what it stood in for is left unexplained instead.
+void Selection::refuse_trends() {
+  for (const Candidate& candidate : residual_.problem().candidates()) {
+    const std::string& id = candidate.facts.id;
+    if (!candidate.facts.free_per_trial || !contains(chosen().structure, id)) continue;
+    if (drift_r2_on_motion(residual_, chosen(), id) <
+        residual_.problem().selection_thresholds().drift_r2_on_motion)
+      continue;
+    const Structure less = minus(chosen().structure, id);
+    part(Solution(chosen()), less);
+    chosen_ = name(less);
+    refused_ = id;
+  }
+}
+
+/// Root mean square of the judged samples of trials that a fit did not see, without weights.
+double error_on_held_out(const Residual& residual, Solution at) {
+  differentiate(residual, at);
+  return held_out_rmse(residual, at);
+}
+
+/// Weights of a robust fit may hide what an effect makes worse: an effect stays only if the error without weights,
+/// on held-out trials, is lower with it.
+void Selection::require_lower_error() {
+  for (bool dropped = true; dropped && !chosen_.empty();) {
+    dropped = false;
+    const double with = error_on_held_out(residual_, chosen());
+    for (const std::string& id : chosen().structure.effects) {
+      const Structure less = minus(chosen().structure, id);
+      part(Solution(chosen()), less);
+      if (with <
+          (1.0 - kSelection.least_fall) * error_on_held_out(residual_, tried_.at(name(less))))
+        continue;
+      chosen_ = name(less);
+      dropped = true;
+      break;
+    }
+  }
+}
+
+/// How far the places of rest of the base's layers have moved from the model's, root mean square.
+/// `count`: of how many.
+double moved(const Solution& at, int& count) {
+  double sum = 0.0;
+  count = 0;
+  for (std::size_t k = 0; k < at.values.size(); ++k) {
+    const Parameter& p = at.parameters[k];
+    if (!p.pointer.starts_with('/') || !p.pointer.ends_with("/equilibrium_m")) continue;
+    sum += (at.values[k] - p.start) * (at.values[k] - p.start);
+    ++count;
+  }
+  return count > 0 ? std::sqrt(sum / count) : 0.0;
+}
+
+/// What a sensor adds looks, in contact alone, as if every layer were shifted: each by the constant
+/// over its stiffness. One constant that brings all of them back to where the model has them is the
+/// simpler reading.
+void Selection::explain_shifts() {
+  for (const Candidate& candidate : residual_.problem().candidates())
+    if (candidate.facts.is_bias) explain_shifts_by(candidate.facts.id);
+}
+
+void Selection::explain_shifts_by(const std::string& bias) {
+  const auto seen = screens_.find(bias);
+  if (seen == screens_.end() || !seen->second.excited || contains(chosen().structure, bias)) return;
+  int layers = 0;
+  const double before_m = moved(chosen(), layers);
+  if (layers < 2 || before_m < kSelection.shifted_m) return;
+  Solution from = chosen();
+  differentiate(residual_, from);
+  const Solution& with = fitted(from, bias, 1);
+  const double after_m = moved(with, layers);
+  if (after_m < (layers == 2 ? kSelection.restored_of_two : kSelection.restored) * before_m &&
+      with.mean_square() < kSelection.no_worse * from.mean_square())
+    chosen_ = name(with.structure);
+}
+
 const Solution& Selection::leading() const {
   const auto price = [&](const auto& entry) { return cost(residual_, entry.second, base()); };
   return std::ranges::min_element(tried_, {}, price)->second;
@@ -249,7 +323,26 @@ bool Selection::run(const std::function<void()>& after_singles) {
   refuse_trends();
   require_lower_error();
   explain_shifts();
-  set_order();
+  // In which order they brought most: the best single of them first.
+  Structure sum;
+  for (std::size_t k = 0; k < chosen().structure.effects.size(); ++k) {
+    std::string best;
+    for (const std::string& id : chosen().structure.effects) {
+      if (contains(sum, id)) continue;
+      const std::string key = name(plus(sum, id));
+      if (!tried_.contains(key)) {
+        const Solution& at = chosen();
+        const Structure part = plus(sum, id);
+        tried_[key] =
+            search(residual_, part, carried(residual_.problem().parameters(part), at), &at);
+      }
+      if (best.empty() ||
+          tried_.at(key).mean_square() < tried_.at(name(plus(sum, best))).mean_square())
+        best = id;
+    }
+    order_.push_back(best);
+    sum = plus(sum, best);
+  }
   return go_on(0.95);
 }
 

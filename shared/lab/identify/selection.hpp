@@ -36,8 +36,6 @@ class Selection {
   const std::vector<std::string>& order() const { return order_; }
   /// An effect that reached the floor by imitation and is not named for that; empty for none.
   const std::string& refused() const { return refused_; }
-  /// A bias that would bring all layers back to where the model has them, and does not lower the held-out error; else empty.
-  const std::string& instead_of_shifts() const { return instead_of_shifts_; }
   /// Does the larger bring the residual so much nearer to the floor than the smaller that it is worth growing further?
   bool clearly_better(const Solution& larger, const Solution& smaller) const;
   /// Every effect's numbers stand to each other as its law means them.
@@ -45,7 +43,6 @@ class Selection {
 
  private:
   Solution& fitted(const Solution& from, const std::string& effect, int tries);
-  Solution differentiated(Solution at) const;  ///< with a jacobian of its own point
   void keep_better(const std::string& key, Solution found);
   void singles();
   void refine(std::size_t effects);
@@ -57,7 +54,6 @@ class Selection {
   void refuse_trends();
   void require_lower_error();
   void explain_shifts();
-  void set_order();
   void explain_shifts_by(const std::string& bias);
   /// The cheapest of a size, most probable first.
   std::vector<const Solution*> best_of(std::size_t effects, std::size_t most) const;
@@ -69,7 +65,7 @@ class Selection {
   std::map<std::string, Solution> tried_;
   std::map<std::string, LinearScreen> screens_;
   std::vector<std::string> order_;
-  std::string chosen_, refused_, instead_of_shifts_;
+  std::string chosen_, refused_;
   bool stopped_ = false;
 };
 

@@ -5,8 +5,7 @@
 #include <iterator>
 #include <random>
 
-#include "lab/identify/held_out.hpp"
-#include "lab/identify/held_out_fall.hpp"
+#include "lab/identify/fit_report.hpp"
 #include "lab/settings.hpp"
 
 namespace tractus {
@@ -66,14 +65,13 @@ bool StructurePosterior::simpler(const Structure& one, const Structure& other) c
          std::ranges::find(parents->second, gained.front()) != parents->second.end();
 }
 
-/// A structure that does not predict the primary channel materially better than a simpler one is none.
+/// A structure that does not lower the unweighted held-out error of the primary channel below that of a simpler one by a
+/// material share is none.
 void StructurePosterior::leave_out_immaterial(const Residual& residual,
                                               const Selection& selection) {
-  const auto fitted = [&](const Entry& entry) -> const Solution& {
-    return selection.tried().at(name(entry.structure));
-  };
   const auto error = [&](Entry& entry) {
-    if (!entry.held_out_rmse) entry.held_out_rmse = held_out_rmse(residual, fitted(entry));
+    if (!entry.held_out_rmse)
+      entry.held_out_rmse = held_out_rmse(residual, selection.tried().at(name(entry.structure)));
     return *entry.held_out_rmse;
   };
   const auto immaterial = [&](Entry& whole) {
@@ -81,7 +79,7 @@ void StructurePosterior::leave_out_immaterial(const Residual& residual,
     return std::ranges::any_of(entries_, [&](Entry& part) {
       return (part.structure.effects.size() < whole.structure.effects.size() ||
               simpler(part.structure, whole.structure)) &&
-             !predicts_better(residual, fitted(part), error(part), fitted(whole), error(whole));
+             error(whole) > (1.0 - kSettings.selection.least_fall) * error(part);
     });
   };
   for (;;) {
