@@ -23,8 +23,6 @@ using core::Error;
 using core::Json;
 using core::Result;
 
-constexpr std::size_t kProposals = 5;  // formulas, where the catalogue does not explain all
-
 struct Asked {
   store::LabRun run;
   store::ModelVersion model;
@@ -139,8 +137,6 @@ class LabRun {
     const auto opened_case = TRY(opened(of_.model, 0.0, 0.3, true));
     lab_io::DiagnoseRequest how{.options = {}, .report = true};
     how.programs = lab_io::DiagnoseRequest::Weigh::if_undecided;
-    how.propose = opened_case.problem->formula_terms() ? kProposals : 0;
-    how.propose_only_if_more_is_missing = true;
     how.options.threads = threads();
     how.options.early = [this](const std::vector<lab::Ranked>& ranking) {
       note_ranking(ranking);

@@ -345,17 +345,6 @@ struct DiagnosisSettings {
   double more_per_share = 10.0;
 };
 
-/// From the comparison's probability p to the one that is stated, 1/(1 + e^−(offset + slope ln p/(1 − p))) [Platt1999]. 0 and
-/// 1 leave p as it is; tests/hidden_physics/benchmark/calibration.py fits them to all generators but one.
-struct CalibrationSettings {
-  /// Of answers that end the matter: complete, missing. Tuned.
-  double ended_offset = 0.0;
-  double ended_slope = 1.0;
-  /// Of answers that say that more is missing: partly, unexplained. Tuned.
-  double more_is_missing_offset = 0.0;
-  double more_is_missing_slope = 1.0;
-};
-
 /// A drift that follows the motion is no sensor's.
 struct DriftOnMotionSettings {
   /// Time constants of the motion's memory that is held against the drift. Physical.
@@ -382,8 +371,6 @@ struct DependenceSettings {
   std::size_t blocks_per_trial = 800;
   /// Time constants of the velocity's memory. Physical.
   std::array<double, 3> memories_s{0.03, 0.15, 0.8};
-  /// And of a palpation's force: bone creeps. Physical.
-  std::array<double, 2> force_memories_s{0.3, 2.0};
   /// A signal that explains less of the variance is not named. Bound.
   double worth_naming = 0.05;
   /// Signals that are named at most. Bound.
@@ -441,7 +428,7 @@ struct SelectionThresholds {
   /// Independent observations that a trial is worth when structures are compared: far below the number of samples, for
   /// what separates structures is small flaws of any model, which all samples of a trial share.
   double observations_per_trial;
-  /// A trend of which the motion's memory explains this share is no sensor's. Of a palpation: that of the force by bone.
+  /// A trend of which the motion's memory explains this share is no sensor's; above 1: never asked.
   double drift_r2_on_motion;
 };
 
@@ -458,7 +445,7 @@ struct Settings {
                                            .least_gain_share = 0.01,
                                            .least_gain_of_excess = 0.0,
                                            .observations_per_trial = 60.0,
-                                           .drift_r2_on_motion = 0.45};
+                                           .drift_r2_on_motion = 1.01};
   SmoothingSettings smoothing;
   PhasesSettings phases;
   DecimationSettings decimation;
@@ -477,7 +464,6 @@ struct Settings {
   PosteriorSettings posterior;
   ValidationSettings validation;
   DiagnosisSettings diagnosis;
-  CalibrationSettings calibration;
   DriftOnMotionSettings drift_on_motion;
   DependenceSettings dependence;
   GrammarSettings grammar;

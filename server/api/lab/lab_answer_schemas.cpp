@@ -111,41 +111,6 @@ Json fitted_trials_schema() {
       "error of each trial");
 }
 
-Json discovery_schema() {
-  const Json numbers = map(object({{"value", number("the number's", "fitted")},
-                                   {"unit", text("unit of the number")},
-                                   {"low", figure("lower end of the 90 % interval")},
-                                   {"high", figure("upper end of the 90 % interval")}}),
-                           "numbers of the term by name");
-  const Json term = object({{"formula", text("one product of the formula")},
-                            {"resembles", text("what it is in physics")},
-                            {"numbers", numbers},
-                            {"effect", ref("EffectFile")}});
-  const Json proposal =
-      object({{"formula", text("the terms' formulas, joined")},
-              {"terms", array(term, "terms of the formula")},
-              {"beside", array(text("identifier of an effect"), "effects that it stands beside")},
-              {"rmse", figure("root mean square error with it")},
-              {"held_out_rmse", figure("the same on trials that were not fitted")},
-              {"probability", share("probability that it is right, among all that was tried")},
-              {"stability", share("share of resamplings of the trials in which it scores best")},
-              {"trials_improved", number("1", "trials whose held-out error is lower with it")},
-              {"size", number("1", "its factors and numbers")},
-              {"passive", truth("true: it takes work from the hand over a cycle")}});
-  const Json unknown =
-      object({{"signals", array(text("a signal as in formulas: x_m"), "one or two signals")},
-              {"units", array(text("unit of the signal"), "their units")},
-              {"knots", array(series("the signal's", "knots of a signal"), "knots by signal")},
-              {"force_N", series("N", "force at the knots; of two signals the second runs faster")},
-              {"effect", nullable(ref("EffectFile"))}});
-  return object({{"proposals", array(proposal, "formulas that were found, most probable first")},
-                 {"formulas_tried", number("1", "terms at all choices of their numbers")},
-                 {"catalogue_probability", share("that the named effects are right")},
-                 {"unknown_probability", share("that it is a function of no formula tried")},
-                 {"unknown", nullable(unknown)},
-                 {"remark", text("why nothing is proposed; else empty")}});
-}
-
 Json diagnosis_schema() {
   const Json effect = object({{"id", text("identifier of the effect")},
                               {"probability", share("probability that the effect is missing")},
@@ -203,7 +168,6 @@ Json diagnosis_schema() {
             "structures that are left, most probable first"))},
        {"settle", nullable(settle)},
        {"torque", optional(torque)},
-       {"discovery", optional(discovery_schema())},
        {"depends_on", text("signal on which an unexplained residual depends; else empty")},
        {"rest_explained", share("share of the residual that the signal explains")},
        {"held_out", text("how trials were held out")},

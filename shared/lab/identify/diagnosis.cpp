@@ -135,21 +135,14 @@ double probability_of_more(const ResidualDependence& rest, const Fit& fit) {
 }
 
 /// Probability that the answer is right as a whole.
-/// See CalibrationSettings.
-double calibrated(double p, double offset, double slope) {
-  const double inside = std::clamp(p, 1e-6, 1.0 - 1e-6);
-  return 1.0 / (1.0 + std::exp(-(offset + slope * std::log(inside / (1.0 - inside)))));
-}
-
 double stated_probability(const Diagnosis& d, const ResidualDependence& rest, double posterior) {
   const double more =
       std::clamp(std::max(probability_of_more(rest, d.final_fit),
                           d.effects.size() >= kAnswer.imitating_effects ? kAnswer.imitation : 0.0),
                  kSettings.posterior.unforeseen, 1.0 - kSettings.posterior.unforeseen);
   return d.verdict == Verdict::partly || d.verdict == Verdict::unexplained
-  constexpr const auto& kMap = kSettings.calibration;
-             ? calibrated(more, kMap.more_is_missing_offset, kMap.more_is_missing_slope)
-             : calibrated(posterior * (1.0 - more), kMap.ended_offset, kMap.ended_slope);
+             ? more
+             : posterior * (1.0 - more);
 }
 
 }  // namespace
@@ -212,8 +205,8 @@ Result<Diagnosis> diagnose(const Problem& problem, const DiagnoseOptions& option
   if (!selection.refused().empty())
     out.notes.push_back(
         fmt::format("{} would bring the residual to the floor, but what it takes out follows the "
-                    "motion or the force before: something with a slow memory, or of another size "
-                    "in each trial, is missing that is in no catalogue",
+                    "motion before: "
+                    "something with a slow memory is missing that is in no catalogue",
                     selection.refused()));
   out.ranking = ranking(residual, selection, posterior);
   if (options.detection_limits)

@@ -41,22 +41,8 @@ std::vector<double> since_reversal(const std::vector<double>& x, const std::vect
   return out;
 }
 
-/// The means of a palpation's force by bone over the time before.
-void add_earlier_force(States& states, std::span<const double> t_s) {
-  for (const char* name : {"force_x_N", "force_y_N", "force_z_N"}) {
-    const auto found = std::ranges::find(states.names, name);
-    if (found == states.names.end()) return;
-    const std::vector<double> force = states.values[std::size_t(found - states.names.begin())];
-    for (const double time_s : kDependence.force_memories_s) {
-      states.names.push_back(fmt::format("earlier {}", name));
-      states.values.push_back(fading_memory(t_s, force, time_s));
-    }
-  }
-}
-
 /// The states and what they leave behind.
 States with_memory(States states, std::span<const double> t_s) {
-  add_earlier_force(states, t_s);
   const auto at = [&](std::string_view name) {
     return std::size_t(std::ranges::find(states.names, name) - states.names.begin());
   };

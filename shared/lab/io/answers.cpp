@@ -163,9 +163,7 @@ Result<LabResult> diagnosed(const Case& opened, const DiagnoseRequest& wish,
   auto diagnosis =
       TRY(lab::diagnose(*opened.problem, wish.options, part_of(progress, 0.0, more ? 0.6 : 1.0)));
   LabResult out = begun(opened);
-  const bool explained =
-      diagnosis.verdict == lab::Verdict::complete || diagnosis.verdict == lab::Verdict::missing;
-  if (wish.propose > 0 && !(explained && wish.propose_only_if_more_is_missing))
+  if (wish.propose > 0)
     out.discovery = TRY(lab::discover(*opened.problem, diagnosis,
                                       {.threads = wish.options.threads, .most = wish.propose},
                                       part_of(progress, 0.6, 0.3)));
@@ -195,7 +193,6 @@ Result<LabResult> diagnosed(const Case& opened, const DiagnoseRequest& wish,
     out.json["where"] = lab::to_json(out.content.before.comparison)["where"];
   }
   out.content.diagnosis = std::move(diagnosis);
-  out.content.discovery = out.discovery;
   return out;
 }
 

@@ -30,7 +30,6 @@ struct DiagnoseRequest {
   lab::DiagnoseOptions options;
   bool report = false;      ///< also compare before and after, for the page
   std::size_t propose = 0;  ///< formulas for what no catalogue explains, at most
-  bool propose_only_if_more_is_missing = false;  ///< than the catalogue explains
   /// Simulates recordings that would decide between the structures left; of the probing rig, opened with its recordings kept.
   enum class Weigh { never, if_undecided, always } programs = Weigh::never;
 };

@@ -61,9 +61,9 @@ std::string report(const ReportContent& content) {
   out += fmt::format(
       "<header><h1>Model lab</h1><p>{}{}</p></header>\n", title,
       content.simulated ? " · <strong>these measurements are simulated themselves</strong>" : "");
-  for (const auto part : {page::verdict, page::falling_error, page::overlays, page::places,
-                          page::ranking, page::discovery, page::parameters, page::undecided,
-                          page::distributions, page::trials, page::assumptions})
+  for (const auto part :
+       {page::verdict, page::falling_error, page::overlays, page::places, page::ranking,
+        page::parameters, page::undecided, page::distributions, page::trials, page::assumptions})
     out += part(content);
   return out +
          "<footer>Made by Tractus. For training and research; not a medical device.</footer>\n"

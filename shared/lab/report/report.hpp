@@ -7,7 +7,6 @@
 
 #include "lab/compare/comparison.hpp"
 #include "lab/compare/samples.hpp"
-#include "lab/discover/discovery.hpp"
 #include "lab/identify/diagnosis.hpp"
 #include "lab/identify/fit.hpp"
 #include "lab/rigs/palpation/tract_map.hpp"
@@ -29,8 +28,7 @@ struct ReportContent {
   std::string before_name = "as given";  ///< or "refitted", where its own numbers were fitted first
   std::optional<Side> better;            ///< refitted, with the effects that were found or added
   std::optional<Diagnosis> diagnosis;
-  std::optional<Discovery> discovery;  ///< where formulas were asked for
-  std::optional<Fit> fit;              ///< of the better model, when nothing was diagnosed
+  std::optional<Fit> fit;            ///< of the better model, when nothing was diagnosed
   std::vector<Parameter> start;      ///< the better model's parameters as they were before the fit
   std::vector<Candidate> catalogue;  ///< for equations and units
   std::vector<std::string> notes;    ///< on the recording

@@ -20,7 +20,6 @@ std::string falling_error(const ReportContent& content);
 std::string overlays(const ReportContent& content);
 std::string places(const ReportContent& content);
 std::string ranking(const ReportContent& content);
-std::string discovery(const ReportContent& content);
 std::string parameters(const ReportContent& content);
 std::string undecided(const ReportContent& content);
 std::string distributions(const ReportContent& content);

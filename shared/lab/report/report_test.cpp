@@ -128,43 +128,6 @@ TEST(Report, LeavesOutWhatThereIsNot) {
   EXPECT_LACKS(html, "held out");
 }
 
-TEST(Report, ShowsAFunctionWithoutAFormulaAsATable) {
-  ReportContent with = content();
-  EXPECT_LACKS(report(with), "What no catalogue has");
-  with.discovery.emplace();
-  with.discovery->remark = "none <lowers> the error";
-  with.discovery->formulas_tried = 1800;
-  with.discovery->unknown_probability = 0.83;
-  with.discovery->unknown = {{"x_m"}, {"m"}, {{0.0, 0.005, 0.02}}, {0.25, -1.5, 3.0}, {}};
-  std::string html = report(with);
-  EXPECT_HOLDS(html, "Of 1800 formulas");
-  EXPECT_HOLDS(html, "none &lt;lowers&gt; the error");
-  EXPECT_HOLDS(html, "in no formula that was tried: 83 %");
-  EXPECT_HOLDS(html, "<tr><th>x_m, m</th><td class=\"n\">0</td><td class=\"n\">0.005</td>");
-  EXPECT_HOLDS(html, "<tr><th>force, N</th><td class=\"n\">0.25</td><td class=\"n\">−1.5</td>");
-  // Of two signals the second runs faster.
-  with.discovery->unknown = {
-      {"x_m", "v_m_s"}, {"m", "m/s"}, {{0.0, 0.5}, {1.0, 2.0}}, {1, 2, 3, 4}, {}};
-  html = report(with);
-  EXPECT_HOLDS(html,
-               "down: x_m, m, across: v_m_s, m/s</th><td class=\"n\">1</td><td class=\"n\">2</td>");
-  EXPECT_HOLDS(html, "<tr><th>0.5</th><td class=\"n\">3</td><td class=\"n\">4</td></tr>");
-}
-
-TEST(Report, ListsFormulasThatWereFound) {
-  ReportContent with = content();
-  with.discovery.emplace();
-  Proposal proposal;
-  proposal.terms.push_back({"amplitude * x_m^2", "a spring that stiffens", {}, {}});
-  proposal.held_out_rmse = 0.0644;
-  proposal.probability = 0.62;
-  with.discovery->proposals.push_back(proposal);
-  EXPECT_HOLDS(
-      report(with),
-      "<tr><td>amplitude * x_m^2</td><td>a spring that stiffens</td><td class=\"n\">0.0644 N</td>"
-      "<td class=\"n\">62 %</td></tr>");
-}
-
 TEST(Words, NameEffectsAndUnits) {
   EXPECT_EQ(effects::label_of("stribeck_friction"), "Stribeck friction");
   EXPECT_EQ(name_and_unit("coefficient_Ns2_per_m2").unit, "N·s²/m²");

@@ -149,30 +149,6 @@ const motionProgramSchema = v.object({
   moves: v.array(v.object({ to_m: finite, speed_m_s: finite, to_rad: finite, speed_rad_s: finite, hold_s: finite })),
 });
 
-/** A tractus-effect/1, kept whole: it is downloaded and added like any custom formula. */
-const effectFile = v.record(v.string(), v.unknown());
-const discoverySchema = v.object({
-  proposals: v.array(
-    v.object({
-      formula: v.string(),
-      terms: v.array(v.object({ formula: v.string(), resembles: v.string(), effect: effectFile })),
-      held_out_rmse: figure,
-      probability: figure,
-    }),
-  ),
-  unknown_probability: figure,
-  unknown: v.nullable(
-    v.object({
-      signals: v.array(v.string()),
-      units: v.array(v.string()),
-      knots: v.array(v.array(figure)),
-      force_N: v.array(figure),
-      effect: v.nullable(effectFile),
-    }),
-  ),
-  remark: v.string(),
-});
-
 export const diagnosisSchema = v.object({
   verdict: v.picklist(['complete', 'missing', 'partly', 'unexplained']),
   headline: v.optional(v.string(), ''),
@@ -202,7 +178,6 @@ export const diagnosisSchema = v.object({
       ),
     }),
   ),
-  discovery: v.optional(discoverySchema),
   depends_on: v.string(),
   held_out: v.string(),
   parameters: v.array(estimate),

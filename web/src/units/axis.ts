@@ -1,6 +1,6 @@
 /** Ticks of an axis: as many decimals as the step needs, all ticks alike. */
 import type { Quantity } from './quantity';
-import { written } from './written';
+import { decimalMark } from './written';
 
 /** Decimals that tell two neighbouring ticks apart. */
 export function decimalsFor(step: number): number {
@@ -17,7 +17,8 @@ export function tickLabels(ticks: readonly number[], step: number): string[] {
   const decimals = decimalsFor(step);
   return ticks.map((tick) => {
     const text = Math.abs(tick).toFixed(decimals);
-    return tick < 0 && Number(text) !== 0 ? `−${written(text)}` : written(text);
+    const shown = text.replace('.', decimalMark());
+    return tick < 0 && Number(text) !== 0 ? `−${shown}` : shown;
   });
 }
 

@@ -25,6 +25,9 @@ function marks(): Marks {
   return found;
 }
 
+/** The mark before the decimals. */
+export const decimalMark = (): string => marks().decimal;
+
 /** "12345.6", as JavaScript writes it, as a person reads it: grouped from five digits on. */
 export function written(plain: string): string {
   const [whole = '', fraction] = plain.split('.');

@@ -26,7 +26,7 @@ describe.each(kTranslations)('the catalogue %s', (language) => {
     const said = pageSentences();
     expect(said.size).toBeGreaterThan(200);
     expect(faults(said, ofPages(language))).toEqual([]);
-  });
+  }, 60_000); // it reads all sources
 
   it('has each sentence in one part alone', () => {
     expect(duplicates(catalogueParts(language))).toEqual([]);

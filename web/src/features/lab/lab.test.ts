@@ -5,7 +5,6 @@ import { differences } from './differences';
 import { primaryUnit } from './comparison-parts';
 import { kBlankOwn, mistypedStates, ownEffect, parametersIn, withFormula, withState } from './own-effect';
 import { parameterName } from './parameters';
-import { tableRows } from './unknown-function';
 import { isNotBetter, verdictOf } from './verdict';
 import { channelQuantity, effectName, joined } from './names';
 import { pack, problemsOf, rootOf } from './zip-files';
@@ -190,28 +189,6 @@ describe('names of the lab', () => {
     expect(joined(['a', 'b', 'c'])).toBe('a, b and c');
     expect(channelQuantity('tz_Nm').unit).toBe('N·m');
     expect(channelQuantity('fz_N').unit).toBe('N');
-  });
-});
-
-describe('a function without a formula', () => {
-  it('has a row for each knot, and of two signals the second across', () => {
-    expect(tableRows({ knots: [[0, 0.01, 0.02]], force_N: [0.5, -1, 2] })).toEqual([
-      { at: 0, force_N: [0.5] },
-      { at: 0.01, force_N: [-1] },
-      { at: 0.02, force_N: [2] },
-    ]);
-    expect(
-      tableRows({
-        knots: [
-          [0, 1],
-          [5, 6, 7],
-        ],
-        force_N: [1, 2, 3, 4, 5, 6],
-      }),
-    ).toEqual([
-      { at: 0, force_N: [1, 2, 3] },
-      { at: 1, force_N: [4, 5, 6] },
-    ]);
   });
 });
 

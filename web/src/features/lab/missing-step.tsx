@@ -5,7 +5,6 @@ import { Badge, Button, Card, Notice, Skeleton } from '@/ui';
 import { formatDuration, formatFigure, formatShare, share } from '@/units';
 import { Headline, primaryUnit } from './comparison-parts';
 import { Series, type Drawable } from './compare-step';
-import { DiscoveryCard } from './discovery-card';
 import { ErrorSteps } from './error-steps';
 import styles from './lab.module.css';
 import { Parameters } from './parameters';
@@ -146,7 +145,6 @@ function Found({ run, diagnosis, model, set, rig }: Props & { readonly run: LabR
           addressToTry={(id) => `${workAddress(model, set, 'add')}?add=${encodeURIComponent(id)}`}
         />
       </Card>
-      <DiscoveryCard diagnosis={diagnosis} unit={unit} />
       <Undetermined diagnosis={diagnosis} />
       {drawable ? (
         <Card
