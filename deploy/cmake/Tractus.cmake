@@ -30,7 +30,8 @@ set(TRACTUS_HOT_FOLDERS shared/core shared/math shared/statistics shared/volume 
 add_library(tractus_options INTERFACE)
 target_compile_options(tractus_options INTERFACE -Wall -Wextra -Wconversion -Wshadow -Werror
   $<$<CXX_COMPILER_ID:GNU>:-Wno-stringop-overflow$<SEMICOLON>-Wno-restrict>  # gcc 12 at -O3 is wrong about buffers of fmt and std::string
-  -march=${TRACTUS_ARCH} -fno-math-errno)
+  -march=${TRACTUS_ARCH} -fno-math-errno
+  -fmacro-prefix-map=${CMAKE_SOURCE_DIR}/=)  # __FILE__ is the same in every checkout, for the compiler cache
 target_link_libraries(tractus_options INTERFACE Threads::Threads fmt::fmt)
 find_program(TRACTUS_MOLD mold)
 if(TRACTUS_MOLD)  # links the test programs several times faster than GNU ld
@@ -45,6 +46,19 @@ if(TRACTUS_TESTS)
   enable_testing()
   find_package(GTest REQUIRED)
   include(GoogleTest)
+endif()
+if(TRACTUS_TESTS OR TRACTUS_FUZZ OR TRACTUS_BENCH)
+  # The paths of this checkout, in one object: all others are the same in every checkout, and a compiler cache serves them.
+  file(CONFIGURE OUTPUT ${CMAKE_BINARY_DIR}/checkout.cpp @ONLY CONTENT
+"#include <checkout.hpp>
+namespace tractus::checkout {
+const char* const kSource = \"${CMAKE_SOURCE_DIR}\";
+const char* const kBin = \"${CMAKE_BINARY_DIR}/bin\";
+const char* const kStandIn = \"${CMAKE_BINARY_DIR}/standin\";
+}
+")
+  add_library(tractus_checkout STATIC ${CMAKE_BINARY_DIR}/checkout.cpp)
+  target_include_directories(tractus_checkout PUBLIC ${CMAKE_SOURCE_DIR}/tests/support/checkout)
 endif()
 
 # One precompiled header of the standard library, fmt, JSON and Eigen serves every target: two thirds of the time of a
@@ -63,6 +77,7 @@ if(TRACTUS_PCH)
 endif()
 
 option(TRACTUS_UNITY "Compile the files of a folder several at a time" ON)
+set(TRACTUS_UNITY_FILES 16 CACHE STRING "How many at a time: three times as many take half of the time, but more is compiled anew after a change")
 
 # What every target of ours gets: optimisation by folder, the precompiled header, and several files
 # compiled as one (TRACTUS_UNITY), for most of a file's time is the headers': names of a folder's anonymous namespaces are unique.
@@ -81,7 +96,7 @@ function(tractus_compile target kind)
   endif()
   if(TRACTUS_UNITY)
     target_compile_options(${target} PRIVATE -Wno-subobject-linkage)  # warns of anonymous namespaces in included files
-    set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 6)
+    set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE ${TRACTUS_UNITY_FILES})
   endif()
 endfunction()
 
@@ -104,15 +119,9 @@ function(tractus_add_test name)
   endif()
   add_executable(${name} ${ARG_SOURCES})
   tractus_include_roots(${name})
-  target_link_libraries(${name} PRIVATE tractus_options ${ARG_DEPS} GTest::gmock GTest::gtest_main)
-  # Only files that name them are compiled with paths of this checkout: a compiler cache serves the others in every checkout.
+  target_link_libraries(${name} PRIVATE tractus_options tractus_checkout ${ARG_DEPS} GTest::gmock GTest::gtest_main)
   foreach(source IN LISTS ARG_SOURCES)
     cmake_path(ABSOLUTE_PATH source BASE_DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR})
-    file(STRINGS ${source} named REGEX "TRACTUS_(SOURCE|BIN)_DIR" LIMIT_COUNT 1)
-    if(named)
-      set_property(SOURCE ${source} APPEND PROPERTY COMPILE_DEFINITIONS
-        TRACTUS_SOURCE_DIR="${CMAKE_SOURCE_DIR}" TRACTUS_BIN_DIR="${CMAKE_BINARY_DIR}/bin")
-    endif()
     file(STRINGS ${source} allocates REGEX "void\\* operator new" LIMIT_COUNT 1)  # for its whole program: compiled alone
     if(allocates)
       set_property(SOURCE ${source} PROPERTY SKIP_UNITY_BUILD_INCLUSION ON)

@@ -6,6 +6,7 @@
 #include "db/store/database/migrations.hpp"
 #include "db/store/operations/backup.hpp"
 #include "server/app/command.hpp"
+#include "server/app/database.hpp"
 
 namespace tractus {
 namespace app {

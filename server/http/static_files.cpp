@@ -72,7 +72,7 @@ struct Coding {
 };
 constexpr std::array<Coding, 2> kCodings{{{"br", ".br"}, {"gzip", ".gz"}}};
 
-std::string_view trimmed(std::string_view text) {
+std::string_view without_blanks(std::string_view text) {
   const auto first = text.find_first_not_of(" \t");
   if (first == std::string_view::npos) return {};
   return text.substr(first, text.find_last_not_of(" \t") - first + 1);
@@ -84,7 +84,7 @@ bool accepts(std::string_view header, std::string_view coding) {
   while (!header.empty()) {
     const std::string_view item = header.substr(0, header.find(','));
     header.remove_prefix(std::min(header.size(), item.size() + 1));
-    const std::string_view name = trimmed(item.substr(0, item.find(';')));
+    const std::string_view name = without_blanks(item.substr(0, item.find(';')));
     if (name != coding) continue;
     const auto weight = item.find("q=");
     return weight == std::string_view::npos ||

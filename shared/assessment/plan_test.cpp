@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <checkout.hpp>
+
 #include "assessment/analyse.hpp"
 #include "assessment/plan_page.hpp"
 #include "assessment/snapshot.hpp"
@@ -15,9 +17,9 @@ namespace {
 using core::Json;
 
 const std::string kExample =
-    std::string(TRACTUS_SOURCE_DIR) + "/shared/assessment/examples/probing-study/";
+    std::string(checkout::kSource) + "/shared/assessment/examples/probing-study/";
 const std::string kReference =
-    std::string(TRACTUS_SOURCE_DIR) + "/tests/golden/statistics-reference/";
+    std::string(checkout::kSource) + "/tests/golden/statistics-reference/";
 
 Table table_in_file(const std::string& path) {
   auto out = Table::read(path, {}, Missing::keep);

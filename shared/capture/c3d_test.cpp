@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <checkout.hpp>
 #include <cmath>
 #include <cstring>
 #include <filesystem>
@@ -18,7 +19,7 @@ namespace {
 namespace fs = std::filesystem;
 using math::Vec3;
 
-const fs::path kGolden = TRACTUS_SOURCE_DIR "/tests/golden/c3d";
+const fs::path kGolden = std::string(checkout::kSource) + "/tests/golden/c3d";
 
 // The numbers of tests/golden/c3d/make.py: multiples of 0.25, exact in any of the six files.
 class EveryC3d : public testing::TestWithParam<const char*> {

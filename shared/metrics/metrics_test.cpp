@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <checkout.hpp>
 #include <cmath>
 #include <fstream>
 #include <numbers>
@@ -16,7 +17,7 @@
 namespace tractus {
 namespace metrics {
 namespace {
-const std::string kGolden = std::string(TRACTUS_SOURCE_DIR) + "/tests/golden/statistics/";
+const std::string kGolden = std::string(checkout::kSource) + "/tests/golden/statistics/";
 
 core::Json golden(const std::string& name) { return core::read_json(kGolden + name).value(); }
 
@@ -94,7 +95,7 @@ TEST(Metrics, EveryEntryExplainsItselfUnderItsFilesName) {
     EXPECT_FALSE(info.unit.empty()) << info.id << " has no unit; a number without one has \"1\"";
     EXPECT_FALSE(info.source.empty()) << info.id << " has no source";
     EXPECT_TRUE(info.definition.ends_with('.')) << info.id;
-    EXPECT_TRUE(std::ifstream(std::string(TRACTUS_SOURCE_DIR) + "/shared/metrics/catalogue/" +
+    EXPECT_TRUE(std::ifstream(std::string(checkout::kSource) + "/shared/metrics/catalogue/" +
                               info.id + ".cpp")
                     .good())
         << info.id;

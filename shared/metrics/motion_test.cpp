@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <checkout.hpp>
 #include <cmath>
 #include <fstream>
 #include <sstream>
@@ -13,9 +14,11 @@ namespace tractus {
 namespace metrics {
 namespace {
 
-const std::string kGolden = std::string(TRACTUS_SOURCE_DIR) + "/tests/golden/statistics/";
+const std::string kMotionGolden = std::string(checkout::kSource) + "/tests/golden/statistics/";
 
-core::Json reference() { return core::read_json(kGolden + "motion_metrics.json").value(); }
+core::Json motion_reference() {
+  return core::read_json(kMotionGolden + "motion_metrics.json").value();
+}
 
 void expect_near(double got, const core::Json& want, double relative) {
   const double value = want.get<double>();
@@ -24,7 +27,7 @@ void expect_near(double got, const core::Json& want, double relative) {
 
 /// Columns of a CSV with one line of names.
 std::vector<std::vector<double>> columns(const std::string& name) {
-  std::ifstream file(kGolden + name);
+  std::ifstream file(kMotionGolden + name);
   std::string line;
   std::getline(file, line);
   std::vector<std::vector<double>> out;
@@ -47,7 +50,7 @@ std::vector<math::Vec3> trajectory_mm() {
 }
 
 TEST(Smoothness, AgreesWithTheAuthorsOwnExample) {
-  const auto want = reference()["gaussian_speed_repo_doctest"];
+  const auto want = motion_reference()["gaussian_speed_repo_doctest"];
   std::vector<double> speed;
   for (int i = 0; i < 200; ++i) speed.push_back(std::exp(-5.0 * std::pow(-1.0 + 0.01 * i, 2)));
   expect_near(*spectral_arc_length(speed, 100.0), want["sparc"], 1e-9);
@@ -57,7 +60,7 @@ TEST(Smoothness, AgreesWithTheAuthorsOwnExample) {
 }
 
 TEST(Smoothness, OfAMinimumJerkMovementIsNearItsContinuousValue) {
-  const auto want = reference()["minimum_jerk"]["sampled_speed"];
+  const auto want = motion_reference()["minimum_jerk"]["sampled_speed"];
   std::vector<double> speed;  // D = 0.1 m, T = 1 s, 101 samples
   for (int i = 0; i <= 100; ++i) {
     const double s = i / 100.0;
@@ -68,7 +71,7 @@ TEST(Smoothness, OfAMinimumJerkMovementIsNearItsContinuousValue) {
 }
 
 TEST(Kinematics, AgreesWithTheReferenceTrajectory) {
-  const auto want = reference()["trajectory"];
+  const auto want = motion_reference()["trajectory"];
   // In millimetres throughout: every measure is free of units or linear in them.
   const auto k = kinematics(trajectory_mm(), 1.0 / 200.0);
   ASSERT_TRUE(k);
@@ -89,7 +92,7 @@ TEST(Kinematics, AgreesWithTheReferenceTrajectory) {
 }
 
 TEST(Tremor, BandPowerAgreesWithWelchOfTheReference) {
-  const auto want = reference()["trajectory"]["tremor"];
+  const auto want = motion_reference()["trajectory"]["tremor"];
   std::vector<double> x;
   for (const auto& p : trajectory_mm()) x.push_back(p.x());
   const auto power = band_power(x, 200.0, 8.0, 12.0);
@@ -100,7 +103,7 @@ TEST(Tremor, BandPowerAgreesWithWelchOfTheReference) {
 }
 
 TEST(Force, ImpulseAndWorkAgreeWithTheReferenceTrial) {
-  const auto want = reference()["breach_trial"];
+  const auto want = motion_reference()["breach_trial"];
   const auto c = columns("sim_breach_trial_1kHz.csv");  // t_s, depth_mm, velocity_mm_s, force_N, …
   expect_near(integral(c[0], c[3]), want["force_integral_Ns_trapezoid"], 1e-9);
   expect_near(integral(c[1], c[3]), want["work_N_mm_trapezoid_over_depth"], 1e-9);

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <checkout.hpp>
 #include <cmath>
 #include <fstream>
 #include <numbers>
@@ -14,7 +15,7 @@ namespace {
 using trial::ProbingMode;
 using trial::ProbingSample;
 
-const std::string kGolden = std::string(TRACTUS_SOURCE_DIR) + "/tests/golden/statistics/";
+const std::string kProbingGolden = std::string(checkout::kSource) + "/tests/golden/statistics/";
 
 trial::Trial empty_trial() {
   trial::Trial trial;
@@ -39,8 +40,8 @@ void add(trial::Trial& trial, int count, ProbingMode mode, double speed_m_s, dou
   }
 }
 
-Score score(const trial::Trial& trial, const std::string& id,
-            std::optional<Truth> truth = std::nullopt) {
+Score probing_score(const trial::Trial& trial, const std::string& id,
+                    std::optional<Truth> truth = std::nullopt) {
   for (const auto& [info, value] : score_all({.trial = trial, .truth = truth}))
     if (info.id == id) return value;
   ADD_FAILURE() << "no metric of probing " << id;
@@ -48,9 +49,9 @@ Score score(const trial::Trial& trial, const std::string& id,
 }
 
 /// The reference's breach trial (mm and mm/s there), computed by NumPy outside this code.
-trial::Trial reference() {
+trial::Trial breach_trial() {
   auto trial = empty_trial();
-  std::ifstream file(kGolden + "sim_breach_trial_1kHz.csv");
+  std::ifstream file(kProbingGolden + "sim_breach_trial_1kHz.csv");
   std::string line;
   std::getline(file, line);
   while (std::getline(file, line)) {
@@ -70,13 +71,13 @@ trial::Trial reference() {
 }
 
 TEST(ProbingMetrics, AgreeWithTheReferenceOnABreachTrial) {
-  const auto trial = reference();
-  const auto all = core::read_json(kGolden + "motion_metrics.json").value()["breach_trial"];
+  const auto trial = breach_trial();
+  const auto all = core::read_json(kProbingGolden + "motion_metrics.json").value()["breach_trial"];
   const auto& whole = all["whole_trial"];
   const auto& breach = all["breach_section_only"];
   // Samples hold speed and force as floats: 6e-8 of each, averaged.
   const auto near = [&](const std::string& id, double expected) {
-    EXPECT_NEAR(score(trial, id).value.value() / expected, 1.0, 1e-6) << id;
+    EXPECT_NEAR(probing_score(trial, id).value.value() / expected, 1.0, 1e-6) << id;
   };
   near("probing_time", whole["operation_time_s_(last-first)"]);
   near("probing_force_mean", whole["force"]["mean"]);
@@ -90,11 +91,11 @@ TEST(ProbingMetrics, AgreeWithTheReferenceOnABreachTrial) {
   near("breach_velocity_peak", 1e-3 * breach["breach_velocity_peak"].get<double>());
   near("breach_velocity_mean", 1e-3 * breach["breach_velocity_mean"].get<double>());
   near("breach_force", 53.938318);  // the row at 4.971 s, before the onset
-  EXPECT_EQ(score(trial, "breaches").value, 1.0);
+  EXPECT_EQ(probing_score(trial, "breaches").value, 1.0);
 }
 
 TEST(ProbingMetrics, OfEachRigDoNotApplyToTheOther) {
-  auto trial = reference();
+  auto trial = breach_trial();
   for (const auto& [info, value] : score_all({.trial = trial}))
     EXPECT_NE(info.rig, trial::Rig::palpation) << info.id;
   trial.header.rig = trial::Rig::palpation;
@@ -116,10 +117,10 @@ TEST(ProbingMetrics, TimeRunsFromTheFirstTurnToTheProbeStop) {
   add(trial, 500, ProbingMode::holding, 0.0);
   add(trial, 1001, ProbingMode::bone, 0.005);
   add(trial, 700, ProbingMode::stopped, 0.0);
-  EXPECT_NEAR(*score(trial, "probing_time").value, 1.0, 1e-12);
-  EXPECT_FALSE(score(trial, "breach_time").value);
+  EXPECT_NEAR(*probing_score(trial, "probing_time").value, 1.0, 1e-12);
+  EXPECT_FALSE(probing_score(trial, "breach_time").value);
   trial.probing.resize(500);  // it never turned
-  EXPECT_FALSE(score(trial, "probing_time").value);
+  EXPECT_FALSE(probing_score(trial, "probing_time").value);
 }
 
 TEST(ProbingMetrics, OnlyTheFirstBreachIsScoredAndTheOthersAreCounted) {
@@ -130,15 +131,15 @@ TEST(ProbingMetrics, OnlyTheFirstBreachIsScoredAndTheOthersAreCounted) {
   add(trial, 10, ProbingMode::breach, 0.1, 20.0);
   add(trial, 300, ProbingMode::bone, 0.005, 80.0);
   add(trial, 30, ProbingMode::breach, 0.05, 10.0);
-  EXPECT_EQ(score(trial, "breaches").value, 2.0);
+  EXPECT_EQ(probing_score(trial, "breaches").value, 2.0);
   add(trial, 1, ProbingMode::bone, 0.001);
   add(trial, 1, ProbingMode::breach, -0.001);  // back across the far border: no new breach
-  EXPECT_EQ(score(trial, "breaches").value, 2.0);
-  EXPECT_NEAR(*score(trial, "breach_time").value, 0.055, 1e-12);
-  EXPECT_NEAR(*score(trial, "breach_force").value, 140.0, 1e-12);
-  EXPECT_NEAR(*score(trial, "breach_force_mean").value, 20.0, 1e-12);
-  EXPECT_EQ(score(trial, "breach_force_mean").note, "of the first breach");
-  EXPECT_NEAR(*score(trial, "breach_velocity_mean").value, 0.1 * 50 / 55, 1e-8);
+  EXPECT_EQ(probing_score(trial, "breaches").value, 2.0);
+  EXPECT_NEAR(*probing_score(trial, "breach_time").value, 0.055, 1e-12);
+  EXPECT_NEAR(*probing_score(trial, "breach_force").value, 140.0, 1e-12);
+  EXPECT_NEAR(*probing_score(trial, "breach_force_mean").value, 20.0, 1e-12);
+  EXPECT_EQ(probing_score(trial, "breach_force_mean").note, "of the first breach");
+  EXPECT_NEAR(*probing_score(trial, "breach_velocity_mean").value, 0.1 * 50 / 55, 1e-8);
 }
 
 TEST(ProbingMetrics, CountPausesWithinTheMotionUnderTremor) {
@@ -152,10 +153,10 @@ TEST(ProbingMetrics, CountPausesWithinTheMotionUnderTremor) {
   add(trial, 200, ProbingMode::bone, 0.0);  // rest after
   for (auto& s : trial.probing)             // 10 Hz tremor of 5 mm/s: averaged out over its period
     s.speed_m_s += float(0.005 * std::sin(2.0 * std::numbers::pi * 10.0 * s.t_s));
-  EXPECT_EQ(score(trial, "pauses").value, 1.0);
+  EXPECT_EQ(probing_score(trial, "pauses").value, 1.0);
   // Below 1 mm/s while less than a sixth of the 101 samples round it move: from 34 ms after the
   // stop to 34 ms before the start.
-  EXPECT_NEAR(*score(trial, "pause_time").value, 0.400 - 2 * 0.034, 0.004);
+  EXPECT_NEAR(*probing_score(trial, "pause_time").value, 0.400 - 2 * 0.034, 0.004);
 }
 
 TEST(ProbingMetrics, MissedPeriodsAreAllThatHadNoExchangeInTime) {
@@ -164,17 +165,17 @@ TEST(ProbingMetrics, MissedPeriodsAreAllThatHadNoExchangeInTime) {
   trial.probing[2].flags = trial::kMissed | trial::kLate;
   trial.probing[4].flags = trial::kBusLost | trial::kStale;
   trial.probing[9].tick = 12;  // three periods without a sample
-  const auto missed = score(trial, "missed_periods");
+  const auto missed = probing_score(trial, "missed_periods");
   EXPECT_EQ(missed.value, 5.0);
   EXPECT_EQ(missed.note, "1 late, 1 failed, 3 skipped");
 }
 
 TEST(ProbingMetrics, TheAnswerIsHeldAgainstTheScenariosWalls) {
-  auto trial = reference();
+  auto trial = breach_trial();
   trial.events.push_back({6.0, "answer", {{"breach", true}, {"wall", nullptr}}});
-  EXPECT_EQ(score(trial, "answer_right", Truth{.breached = {}, .walls = 1}).value, 1.0);
-  EXPECT_EQ(score(trial, "answer_right", Truth{.breached = {}, .walls = 0}).value, 0.0);
-  EXPECT_FALSE(score(trial, "answer_right").value);
+  EXPECT_EQ(probing_score(trial, "answer_right", Truth{.breached = {}, .walls = 1}).value, 1.0);
+  EXPECT_EQ(probing_score(trial, "answer_right", Truth{.breached = {}, .walls = 0}).value, 0.0);
+  EXPECT_FALSE(probing_score(trial, "answer_right").value);
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 #include "statistics/golden_test.hpp"
 
+#include <checkout.hpp>
 #include <cmath>
 #include <fstream>
 #include <limits>
@@ -11,7 +12,7 @@ namespace tractus {
 namespace statistics::golden {
 namespace {
 
-const std::string kRoot = std::string(TRACTUS_SOURCE_DIR) + "/tests/golden/statistics-reference/";
+const std::string kRoot = std::string(checkout::kSource) + "/tests/golden/statistics-reference/";
 
 std::vector<std::string> lines_of(const std::string& path) {
   std::ifstream file(kRoot + path);

@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <checkout.hpp>
 #include <cmath>
 #include <cstring>
 #include <fstream>
@@ -19,7 +20,7 @@ namespace fs = std::filesystem;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-Header header() {
+Header probing_header() {
   Header h;
   h.id = std::string(32, 'a');
   h.case_id = std::string(64, 'b');
@@ -29,7 +30,7 @@ Header header() {
 }
 
 /// Sample number i: every field tells i, so that a wrong one cannot pass for it.
-ProbingSample sample(std::uint32_t i) {
+ProbingSample probing_sample(std::uint32_t i) {
   ProbingSample s;
   const auto f = float(i);
   s.t_s = double(i) / 1000.0;
@@ -45,9 +46,9 @@ ProbingSample sample(std::uint32_t i) {
   return s;
 }
 
-std::vector<ProbingSample> samples(std::uint32_t from, std::uint32_t count) {
+std::vector<ProbingSample> probing_samples(std::uint32_t from, std::uint32_t count) {
   std::vector<ProbingSample> out;
-  for (std::uint32_t i = from; i < from + count; ++i) out.push_back(sample(i));
+  for (std::uint32_t i = from; i < from + count; ++i) out.push_back(probing_sample(i));
   return out;
 }
 
@@ -61,29 +62,29 @@ class ProbingFile : public testing::Test {
   void TearDown() override { fs::remove_all(folder_); }
   const fs::path folder_ = fs::temp_directory_path() / ("tractus_probing_" + core::new_id());
   const fs::path path_ = folder_ / "a.trial";
-  const fs::path golden_ = fs::path(TRACTUS_SOURCE_DIR) / "tests/golden/trial-format-1-probing";
+  const fs::path golden_ = fs::path(checkout::kSource) / "tests/golden/trial-format-1-probing";
 };
 
 TEST_F(ProbingFile, GivesBackWhatWasWrittenInFramesOfItsOwnSize) {
   const std::uint32_t many = std::uint32_t(max_frame_samples(sizeof(ProbingSample))) + 7;
   {
-    auto writer = TrialWriter::create(path_, header());
+    auto writer = TrialWriter::create(path_, probing_header());
     ASSERT_TRUE(writer) << writer.error().what;
     ASSERT_TRUE(writer->append(Event{0.0, "start"}));
-    ASSERT_TRUE(writer->append(samples(0, many)));
+    ASSERT_TRUE(writer->append(probing_samples(0, many)));
     ASSERT_TRUE(writer->append(Event{1e3, "end"}));
     ASSERT_TRUE(writer->finish());
   }
   const auto trial = read_trial(path_);
   ASSERT_TRUE(trial) << trial.error().what;
-  EXPECT_EQ(trial->header.to_json(), header().to_json());
-  EXPECT_TRUE(same(trial->probing, samples(0, many)));
+  EXPECT_EQ(trial->header.to_json(), probing_header().to_json());
+  EXPECT_TRUE(same(trial->probing, probing_samples(0, many)));
   EXPECT_TRUE(trial->samples.empty());
   EXPECT_TRUE(trial->complete);
 }
 
 TEST_F(ProbingFile, TakesSamplesOfItsOwnRigAlone) {
-  auto writer = TrialWriter::create(path_, header());
+  auto writer = TrialWriter::create(path_, probing_header());
   ASSERT_TRUE(writer);
   const auto refused = writer->append(std::vector{Sample{}});
   ASSERT_FALSE(refused);
@@ -92,25 +93,25 @@ TEST_F(ProbingFile, TakesSamplesOfItsOwnRigAlone) {
 }
 
 TEST_F(ProbingFile, RefusesWhatNoSampleMayBe) {
-  auto writer = TrialWriter::create(path_, header());
+  auto writer = TrialWriter::create(path_, probing_header());
   ASSERT_TRUE(writer);
-  ASSERT_TRUE(writer->append(samples(0, 3)));
-  auto bad = sample(3);
+  ASSERT_TRUE(writer->append(probing_samples(0, 3)));
+  auto bad = probing_sample(3);
   bad.fz_N = std::numeric_limits<float>::quiet_NaN();
   EXPECT_FALSE(writer->append(std::vector{bad}));
-  bad = sample(3);
+  bad = probing_sample(3);
   bad.mode = ProbingMode(9);
   EXPECT_THAT(writer->append(std::vector{bad}).error().what, HasSubstr("mode 9"));
-  bad = sample(2);  // the tick stands still
+  bad = probing_sample(2);  // the tick stands still
   EXPECT_FALSE(writer->append(std::vector{bad}));
-  bad = sample(3);
+  bad = probing_sample(3);
   bad.t_s = 0.0;
   EXPECT_FALSE(writer->append(std::vector{bad}));
   EXPECT_EQ(writer->samples_written(), 3u);
 }
 
 TEST_F(ProbingFile, AnUnknownRigIsRefusedByName) {
-  auto json = header().to_json();
+  auto json = probing_header().to_json();
   json["rig"] = "cutting";
   const auto refused = Header::from_json(json, "header");
   ASSERT_FALSE(refused);
@@ -176,8 +177,8 @@ TEST_F(ProbingFile, ACutOneIsReadToItsLastWholeFrameAndCanBeEnded) {
 }
 
 TEST(ProbingSignals, ShowTheSamplesChannelsOverTime) {
-  Signals signals(header(), {});
-  signals.add({{}, samples(0, 3)});
+  Signals signals(probing_header(), {});
+  signals.add({{}, probing_samples(0, 3)});
   EXPECT_THAT(signals.channels(), ElementsAre("force_N", "depth_m", "speed_m_s", "angle_rad",
                                               "torque_Nm", "mode", "round_trip_s"));
   const auto view = signals.view(signals.channels(), 0, 1, 10);
@@ -192,11 +193,11 @@ TEST(ProbingSignals, ShowTheSamplesChannelsOverTime) {
 
 TEST(ProbingSignals, ForceAgainstDepthKeepsThePeaksOfEveryStretch) {
   // Ten samples, one stretch of five each: 90 N at 3, -7 N at 1; 50 N at 5, -1 N at 9.
-  auto block = samples(0, 10);
+  auto block = probing_samples(0, 10);
   for (auto& s : block) s.fz_N = 1.0f, s.mode = ProbingMode::bone;
   block[3].fz_N = 90.0f, block[3].mode = ProbingMode::breach;
   block[1].fz_N = -7.0f, block[5].fz_N = 50.0f, block[9].fz_N = -1.0f;
-  Signals signals(header(), {});
+  Signals signals(probing_header(), {});
   signals.add({{}, block});
   const auto curve = signals.force_against_depth(5);  // two pairs
   EXPECT_THAT(curve.force_N, ElementsAre(-7, 90, 50, -1));

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 
+#include <checkout.hpp>
 #include <cmath>
 #include <csignal>
 #include <cstring>
@@ -445,7 +446,7 @@ INSTANTIATE_TEST_SUITE_P(Formats, ReleasedTrialFile,
 
 // Written by make.py of tests/golden/trial-format-1 and -2, which share no code with the reader.
 TEST_P(ReleasedTrialFile, IsReadForEver) {
-  const fs::path golden = fs::path(TRACTUS_SOURCE_DIR) / "tests/golden";
+  const fs::path golden = fs::path(checkout::kSource) / "tests/golden";
   const auto expected = core::read_json(golden / "trial-format-1/expected.json").value();
   const auto trial = read_trial(golden / GetParam().whole);
   ASSERT_TRUE(trial) << trial.error().what;

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <checkout.hpp>
 #include <filesystem>
 #include <fstream>
 #include <map>
@@ -16,7 +17,7 @@ namespace {
 namespace fs = std::filesystem;
 using Names = std::set<std::string>;
 
-const fs::path kRoot = TRACTUS_SOURCE_DIR;
+const fs::path kRoot = checkout::kSource;
 
 /// Folder → folders its files may include (itself always). Only `*/app` sees everything on its
 /// side.

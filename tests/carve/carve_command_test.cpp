@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <checkout.hpp>
 #include <cstdlib>
 #include <filesystem>
 
@@ -68,7 +69,7 @@ class Carve : public testing::Test {
   static Ran tractus(const std::string& arguments) {
     const fs::path out = top_ / "out.txt", err = top_ / "err.txt";
     const std::string line = fmt::format("cd '{}' && '{}/tractus' {} >'{}' 2>'{}'", work().string(),
-                                         TRACTUS_BIN_DIR, arguments, out.string(), err.string());
+                                         checkout::kBin, arguments, out.string(), err.string());
     const int status = std::system(line.c_str());
     const auto text = [](const fs::path& path) {
       return std::string(core::text_of(*core::read_file(path)));

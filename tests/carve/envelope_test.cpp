@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <checkout.hpp>
 #include <cmath>
 #include <filesystem>
 
@@ -27,7 +28,7 @@ void PrintTo(const Vertebra& vertebra, std::ostream* out) { *out << vertebra.nam
 
 volume::Volume read(const char* name) {
   auto in =
-      volume_io::read_volume(std::filesystem::path(TRACTUS_SOURCE_DIR) / "tests/data/ct" / name);
+      volume_io::read_volume(std::filesystem::path(checkout::kSource) / "tests/data/ct" / name);
   EXPECT_TRUE(in) << (in ? "" : in.error().what);
   return in->volume;
 }

@@ -1,6 +1,7 @@
 /// Carving into a real L3, held against a segmentation that others made (tests/data/SOURCES.md).
 #include <gtest/gtest.h>
 
+#include <checkout.hpp>
 #include <cmath>
 #include <filesystem>
 
@@ -14,7 +15,7 @@ using volume::Vec3;
 using volume::Wall;
 
 const std::filesystem::path kFolder =
-    std::filesystem::path(TRACTUS_SOURCE_DIR) / "tests/data/ct/tptbox_L3";
+    std::filesystem::path(checkout::kSource) / "tests/data/ct/tptbox_L3";
 
 struct Vertebra {
   volume::Volume ct, parts, levels;

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 
+#include <checkout.hpp>
 #include <chrono>
 #include <cstdlib>
 #include <filesystem>
@@ -49,7 +50,7 @@ class AlignLambda6 : public testing::Test {
         fmt::format("cd {} && umockdev-run --device {}/tests/support/dhd/lambda6.umockdev -- "
                     "{}/tractus-station align --device lambda6 --sdk {}/../standin --data st "
                     "--fixture f.json --json >out 2>err </dev/null",
-                    folder_.string(), TRACTUS_SOURCE_DIR, TRACTUS_BIN_DIR, TRACTUS_BIN_DIR)
+                    folder_.string(), checkout::kSource, checkout::kBin, checkout::kBin)
             .c_str());
     return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
   }

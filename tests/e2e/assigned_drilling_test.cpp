@@ -6,6 +6,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <checkout.hpp>
 #include <chrono>
 #include <cmath>
 #include <fstream>
@@ -125,7 +126,7 @@ class AssignedDrilling : public ::testing::Test {
       std::vector<char*> argv{const_cast<char*>("tractus-station")};
       for (const auto& word : words) argv.push_back(const_cast<char*>(word.c_str()));
       argv.push_back(nullptr);
-      ::execv(TRACTUS_BIN_DIR "/tractus-station", argv.data());
+      ::execv((std::string(checkout::kBin) + "/tractus-station").c_str(), argv.data());
       ::_exit(127);
     }
     const auto until = std::chrono::steady_clock::now() + std::chrono::seconds(60);

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 
+#include <checkout.hpp>
 #include <cstdlib>
 #include <string>
 
@@ -10,8 +11,8 @@ namespace tractus {
 namespace {
 
 int exit_of_demo(const std::string& options) {
-  const std::string command =
-      "TRACTUS_BIN=" TRACTUS_BIN_DIR " " TRACTUS_SOURCE_DIR "/deploy/demo-study " + options;
+  const std::string command = std::string("TRACTUS_BIN=") + checkout::kBin + " " +
+                              checkout::kSource + "/deploy/demo-study " + options;
   const int status = std::system(command.c_str());
   return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
 }

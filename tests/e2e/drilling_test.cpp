@@ -7,6 +7,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <checkout.hpp>
 #include <chrono>
 #include <cstdlib>
 #include <filesystem>
@@ -32,7 +33,7 @@ class DrillingLive : public testing::Test {
     ASSERT_EQ(run(fmt::format(
                   "tractus carve --volume {}/tests/data/ct/tptbox_L3/sub-ct_label-22_ct.nii.gz "
                   "--entry 46,200,-61 --target 38.5,158,-61 --no-channel --key key --out case",
-                  TRACTUS_SOURCE_DIR)),
+                  checkout::kSource)),
               0)
         << said();
     ASSERT_EQ(run("tractus-station trust --data st --case case"), 0) << said();
@@ -40,7 +41,7 @@ class DrillingLive : public testing::Test {
   void TearDown() override { fs::remove_all(folder_); }
 
   static std::string in_folder(const std::string& command) {
-    return fmt::format("{}/{}", TRACTUS_BIN_DIR, command);
+    return fmt::format("{}/{}", checkout::kBin, command);
   }
   int run(const std::string& command) {
     const int status = std::system(
@@ -170,7 +171,7 @@ TEST_F(DrillingLive, TakesAwayWhatTheLawSaysWhenItIsIntegratedAnew) {
             ","));
   ASSERT_TRUE(core::write_file(folder_ / "samples.csv", core::bytes_of(csv)));
   ASSERT_EQ(std::system(fmt::format("/usr/bin/python3 {}/tests/golden/drilling/law.py {} >{}/out",
-                                    TRACTUS_SOURCE_DIR, folder_.string(), folder_.string())
+                                    checkout::kSource, folder_.string(), folder_.string())
                             .c_str()),
             0)
       << "python3-numpy is needed";

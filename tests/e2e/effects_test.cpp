@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 
+#include <checkout.hpp>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -25,7 +26,7 @@ class EffectsCommand : public testing::Test {
   void TearDown() override { fs::remove_all(folder_); }
   /// Exit status; both outputs in `said_`.
   int run(const std::string& arguments) {
-    const std::string command = std::string(TRACTUS_BIN_DIR) + "/tractus effects " + arguments +
+    const std::string command = std::string(checkout::kBin) + "/tractus effects " + arguments +
                                 " > " + folder_ + "/said 2>&1";
     const int status = std::system(command.c_str());
     std::stringstream text;

@@ -5,6 +5,7 @@
 #include <sys/wait.h>
 
 #include <algorithm>
+#include <checkout.hpp>
 #include <cstdlib>
 #include <filesystem>
 
@@ -27,7 +28,7 @@ class HeadsetTrial : public testing::Test {
     run(
         fmt::format("tractus carve --volume {}/tests/data/ct/tptbox_L3/sub-ct_label-22_ct.nii.gz "
                     "--entry 46,200,-61 --target 38.5,158,-61 --breach medial --key key --out case",
-                    TRACTUS_SOURCE_DIR));
+                    checkout::kSource));
     run("tractus-station trust --data station --case case");
   }
   static void TearDownTestSuite() {
@@ -35,7 +36,8 @@ class HeadsetTrial : public testing::Test {
   }
   void SetUp() override {
     ::setenv("TRACTUS_OPENXR_TEST", (home() / "control").c_str(), 1);
-    ::setenv("XR_RUNTIME_JSON", TRACTUS_STANDIN_DIR "/openxr_runtime.json", 1);
+    ::setenv("XR_RUNTIME_JSON", (std::string(checkout::kStandIn) + "/openxr_runtime.json").c_str(),
+             1);
     ::unsetenv("DISPLAY");
     control_ = support::mapped_in<fakexr::Control>(home() / "control");
     ASSERT_NE(control_, nullptr);
@@ -56,8 +58,7 @@ class HeadsetTrial : public testing::Test {
   /// Exit status; what it said is in `out` and `err`.
   static int run(const std::string& command) {
     const int status = std::system(
-        fmt::format("cd {} && {}/{} >out 2>err", home().string(), TRACTUS_BIN_DIR, command)
-            .c_str());
+        fmt::format("cd {} && {}/{} >out 2>err", home().string(), checkout::kBin, command).c_str());
     return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
   }
   static int trial(const std::string& more) {

@@ -5,6 +5,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <checkout.hpp>
 #include <cstdlib>
 #include <filesystem>
 #include <numbers>
@@ -38,7 +39,7 @@ class IgtlOut : public testing::Test {
     return out;
   }
   static std::string listener(int port, int count) {
-    return fmt::format("{}/../tests/igtl_listener {} {}", TRACTUS_BIN_DIR, port, count);
+    return fmt::format("{}/../tests/igtl_listener {} {}", checkout::kBin, port, count);
   }
   const fs::path folder_ = fs::temp_directory_path() / ("tractus_igtl_" + core::new_id());
 };
@@ -102,11 +103,11 @@ TEST_F(IgtlOut, APortThatIsTakenIsRefusedInWords) {
 }
 
 TEST_F(IgtlOut, ATrialsTipIsHeardWhileItRuns) {
-  const std::string bin = TRACTUS_BIN_DIR;
+  const std::string bin = checkout::kBin;
   ASSERT_EQ(shell(fmt::format("{}/tractus carve --volume {}/tests/data/ct/tptbox_L3/sub-ct_label-"
                               "22_ct.nii.gz --entry 46,200,-61 --target 38.5,158,-61 --key key "
                               "--out case >out 2>err",
-                              bin, TRACTUS_SOURCE_DIR)),
+                              bin, checkout::kSource)),
             0);
   ASSERT_EQ(shell(bin + "/tractus-station trust --data st --case case >out 2>err"), 0);
   const std::string station =

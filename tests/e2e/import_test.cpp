@@ -7,6 +7,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <checkout.hpp>
 #include <cstring>
 #include <functional>
 
@@ -22,7 +23,7 @@ using test_support::put;
 using test_support::Scratch;
 namespace fs = std::filesystem;
 
-const fs::path kCts = fs::path(TRACTUS_SOURCE_DIR) / "tests/data/ct";
+const fs::path kCts = fs::path(checkout::kSource) / "tests/data/ct";
 const fs::path kL3 = kCts / "tptbox_L3/sub-ct_label-22_ct.nii.gz";
 
 struct Ended {
@@ -37,7 +38,7 @@ std::string text_of(const fs::path& path) {
 
 Ended tractus(const std::vector<std::string>& arguments) {
   const Scratch folder;
-  const std::string program = TRACTUS_BIN_DIR "/tractus";
+  const std::string program = std::string(checkout::kBin) + "/tractus";
   std::vector<char*> argv{const_cast<char*>(program.c_str())};
   for (const auto& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
   argv.push_back(nullptr);

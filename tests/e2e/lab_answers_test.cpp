@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 
+#include <checkout.hpp>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
@@ -20,14 +21,14 @@ namespace {
 namespace fs = std::filesystem;
 using Paths = std::set<std::string>;
 
-const std::string kTractus = TRACTUS_BIN_DIR "/tractus";
+const std::string kTractus = std::string(checkout::kBin) + "/tractus";
 
 /// Field → what stands in its last column, by format.
 using Documented = std::map<std::string, std::map<std::string, std::string>>;
 
 Documented documented() {
   Documented out;
-  std::ifstream file(TRACTUS_SOURCE_DIR "/shared/doc/lab-answers.md");
+  std::ifstream file(std::string(checkout::kSource) + "/shared/doc/lab-answers.md");
   std::string line, format;
   while (std::getline(file, line)) {
     if (line.starts_with("## `")) format = line.substr(4, line.find('`', 4) - 4);

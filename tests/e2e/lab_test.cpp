@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 
+#include <checkout.hpp>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
@@ -23,7 +24,7 @@ namespace {
 namespace fs = std::filesystem;
 using testing::HasSubstr;
 
-const std::string kTractus = TRACTUS_BIN_DIR "/tractus";
+const std::string kTractus = std::string(checkout::kBin) + "/tractus";
 
 struct Ran {
   int code;
@@ -220,7 +221,7 @@ TEST_F(Lab, WritesAReportThatABrowserOpensWithoutComplaint) {
 // Fitted to a real tool turning at 0.2 Hz, tried at 0.4 and 0.5 Hz. No figure of ours is expected:
 // only that what was found at one speed is worth something at others.
 TEST_F(Lab, WhatIsFoundOnARealToolHoldsAtSpeedsItNeverSaw) {
-  const std::string data = TRACTUS_SOURCE_DIR "/tests/data/force/cable_tool_odbl";
+  const std::string data = std::string(checkout::kSource) + "/tests/data/force/cable_tool_odbl";
   const auto run = [&](const std::string& command, const std::string& model, const std::string& set,
                        const std::string& more) {
     return json(ran(fmt::format("{} {} --model {} --measurements {}/drum/{} {} --json", kTractus,
@@ -241,7 +242,8 @@ TEST_F(Lab, WhatIsFoundOnARealToolHoldsAtSpeedsItNeverSaw) {
 
 // The same tool as the rotary axis that it is: fitted at 0.2 Hz, tried at 0.4 and 0.5 Hz.
 TEST_F(Lab, WhatIsFoundAboutARealAxisHoldsAtSpeedsItNeverSaw) {
-  const std::string data = TRACTUS_SOURCE_DIR "/tests/data/force/cable_tool_odbl/turning/";
+  const std::string data =
+      std::string(checkout::kSource) + "/tests/data/force/cable_tool_odbl/turning/";
   std::ofstream(at("axis.json"))
       << R"({"format":"tractus-model/1","rig":"probing","name":"viscous axis","base":{"layers":[],)"
       << R"("rotary":{"viscous_Nms_per_rad":0.01,"detent_Nm":0,"detent_pitch_rad":0.35}},)"

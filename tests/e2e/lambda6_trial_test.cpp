@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <checkout.hpp>
 #include <cstdlib>
 #include <filesystem>
 
@@ -21,7 +22,7 @@ class Lambda6Trial : public testing::Test {
     ASSERT_EQ(run(fmt::format("tractus carve --volume {}/tests/data/ct/tptbox_L3/sub-ct_label-22_"
                               "ct.nii.gz --entry 46,200,-61 --target 38.5,158,-61 --key key "
                               "--out case",
-                              TRACTUS_SOURCE_DIR)),
+                              checkout::kSource)),
               0)
         << words();
     ASSERT_EQ(run("tractus-station trust --data st --case case"), 0) << words();
@@ -30,7 +31,7 @@ class Lambda6Trial : public testing::Test {
 
   int run(const std::string& command, const std::string& before = "") {
     const int status = std::system(fmt::format("cd {} && {} {}/{} >out 2>err", folder_.string(),
-                                               before, TRACTUS_BIN_DIR, command)
+                                               before, checkout::kBin, command)
                                        .c_str());
     return WEXITSTATUS(status);
   }
@@ -41,9 +42,9 @@ class Lambda6Trial : public testing::Test {
   const std::string trial_ = fmt::format(
       "tractus-station --device lambda6 --sdk {}/../standin --case case --data st "
       "--duration 1 --answer none --json",
-      TRACTUS_BIN_DIR);
+      checkout::kBin);
   const std::string plugged_ = fmt::format(
-      "umockdev-run --device {}/tests/support/dhd/lambda6.umockdev --", TRACTUS_SOURCE_DIR);
+      "umockdev-run --device {}/tests/support/dhd/lambda6.umockdev --", checkout::kSource);
   const fs::path folder_ = fs::temp_directory_path() / ("tractus_lambda6_" + core::new_id());
 };
 

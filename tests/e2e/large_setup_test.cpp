@@ -8,6 +8,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <checkout.hpp>
 #include <chrono>
 #include <cstdlib>
 #include <fstream>
@@ -50,7 +51,7 @@ class Proxy {
     ::setenv("TRACTUS_RUN", folder_.c_str(), 1);
     const fs::path configuration = folder_ / "nginx.conf";
     const std::string render =
-        std::string(TRACTUS_SOURCE_DIR) + "/deploy/large/render > " + configuration.string();
+        std::string(checkout::kSource) + "/deploy/large/render > " + configuration.string();
     EXPECT_EQ(std::system(render.c_str()), 0);
     std::vector<std::string> words{"nginx",       "-e", folder_ / "start.log", "-p", folder_, "-c",
                                    configuration, "-g", "daemon off;"};

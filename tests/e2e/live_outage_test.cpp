@@ -5,6 +5,7 @@
 #include <sys/wait.h>
 
 #include <algorithm>
+#include <checkout.hpp>
 #include <cstdlib>
 #include <fstream>
 
@@ -135,7 +136,7 @@ TEST(Outage, AStationThatIsKilledWhileItFetchesACaseHasItWholeOrNotAtAll) {
         "timeout --foreground --preserve-status -s KILL {:.3f} {}/tractus-station sync --data {} "
         "--server http://127.0.0.1:{} "
         "--token-file {} > {} 2>&1",
-        ms * 1e-3, TRACTUS_BIN_DIR, data.string(), server.port(),
+        ms * 1e-3, checkout::kBin, data.string(), server.port(),
         (world.folder / "st.token").string(), (world.folder / "said").string());
     const int status = std::system(command.c_str());
     code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);

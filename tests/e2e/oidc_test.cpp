@@ -5,6 +5,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <checkout.hpp>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -17,7 +18,7 @@ namespace {
 using namespace world;
 namespace fs = std::filesystem;
 
-const fs::path kScripts = fs::path(TRACTUS_SOURCE_DIR) / "tests/oidc";
+const fs::path kScripts = fs::path(checkout::kSource) / "tests/oidc";
 
 /// tests/oidc/provider.mjs.
 class Provider {

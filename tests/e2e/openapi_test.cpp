@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <checkout.hpp>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
@@ -14,7 +15,7 @@ namespace tractus {
 namespace {
 namespace fs = std::filesystem;
 
-const fs::path kLinter = fs::path(TRACTUS_SOURCE_DIR) / "tests/openapi";
+const fs::path kLinter = fs::path(checkout::kSource) / "tests/openapi";
 
 class OpenApi : public ::testing::Test {
  protected:

@@ -6,6 +6,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <checkout.hpp>
 #include <chrono>
 #include <cmath>
 #include <cstring>
@@ -48,7 +49,7 @@ class ProbingTrial : public testing::Test {
   ~ProbingTrial() override { fs::remove_all(data_); }
 
   std::string station(const std::string& more) const {
-    return TRACTUS_BIN_DIR "/tractus-station --data " + data_.string() + " " + more;
+    return std::string(checkout::kBin) + "/tractus-station --data " + data_.string() + " " + more;
   }
   Ended on_rig(int port, const std::string& duration_s = "20") const {
     return ended(station("--device rig --scenario soft --address 127.0.0.1:" +

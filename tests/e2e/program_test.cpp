@@ -5,6 +5,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <checkout.hpp>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
@@ -19,8 +20,8 @@ namespace fs = std::filesystem;
 using core::Json;
 using testing::HasSubstr;
 
-const std::string kTractus = TRACTUS_BIN_DIR "/tractus",
-                  kStation = TRACTUS_BIN_DIR "/tractus-station";
+const std::string kTractus = std::string(checkout::kBin) + "/tractus",
+                  kStation = std::string(checkout::kBin) + "/tractus-station";
 
 struct Ran {
   int code;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <checkout.hpp>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -45,7 +46,7 @@ class RecordedTrial : public testing::Test {
   /// Runs a program of ours; its words go to a log that a failure shows.
   void run(const std::string& command) {
     const int status = std::system(
-        fmt::format("cd {} && {}/{} >>{} 2>&1", folder_.string(), TRACTUS_BIN_DIR, command, log_)
+        fmt::format("cd {} && {}/{} >>{} 2>&1", folder_.string(), checkout::kBin, command, log_)
             .c_str());
     const auto words = core::read_file(log_);
     ASSERT_EQ(status, 0) << command << "\n" << (words ? core::text_of(*words) : "");
@@ -78,7 +79,7 @@ TEST_F(RecordedTrial, IsFeltTheSameByTheStationAndByAReplay) {
   run(
       fmt::format("tractus carve --volume {}/tests/data/ct/tptbox_L3/sub-ct_label-22_ct.nii.gz "
                   "--entry 46,200,-61 --target 38.5,158,-61 --breach medial --key key --out case",
-                  TRACTUS_SOURCE_DIR));
+                  checkout::kSource));
   run("tractus-station trust --data station --case case");
   run("tractus-station --data station --case case --speed fast --seed 4 --duration 15");
   ASSERT_NO_FATAL_FAILURE(make_set());

@@ -10,6 +10,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <checkout.hpp>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -317,7 +318,7 @@ class SerialLine {
 
 TEST(RigProgram, AnswersOnTcpAndOnASerialLineAtOnce) {
   const SerialLine line;
-  Process program({std::string(TRACTUS_BIN_DIR) + "/tractus-rig", "--port", "0", "--json", "--rtu",
+  Process program({std::string(checkout::kBin) + "/tractus-rig", "--port", "0", "--json", "--rtu",
                    line.end(0), "--surgeon", "--seed", "3"});
   const auto ready = core::parse_json(program.line(), "tractus-rig");
   ASSERT_TRUE(ready) << ready.error().what;

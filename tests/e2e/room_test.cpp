@@ -9,6 +9,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <checkout.hpp>
 #include <cmath>
 #include <filesystem>
 #include <map>
@@ -30,8 +31,8 @@ namespace fs = std::filesystem;
 using core::Json;
 using math::Vec3;
 
-const std::string kSupport = TRACTUS_SOURCE_DIR "/tests/support/netft/";
-const std::string kBin = TRACTUS_BIN_DIR;
+const std::string kSupport = std::string(checkout::kSource) + "/tests/support/netft/";
+const std::string kBin = checkout::kBin;
 
 std::string text_of(const fs::path& path) {
   const auto bytes = core::read_file(path);

@@ -4,6 +4,7 @@
 #include <sys/wait.h>
 
 #include <algorithm>
+#include <checkout.hpp>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -27,7 +28,7 @@ class ScenarioCommand : public testing::Test {
   std::string path(const std::string& name) const { return folder_ + "/" + name; }
   /// Exit status; both outputs in `said_`.
   int run(const std::string& arguments) {
-    const std::string command = std::string(TRACTUS_BIN_DIR) + "/tractus scenario " + arguments +
+    const std::string command = std::string(checkout::kBin) + "/tractus scenario " + arguments +
                                 " > " + path("said") + " 2>&1";
     const int status = std::system(command.c_str());
     said_ = text_of(path("said"));

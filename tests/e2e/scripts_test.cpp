@@ -1,6 +1,7 @@
 /// The guide's examples for scripts, run as a reader runs them, against the real server.
 #include <gtest/gtest.h>
 
+#include <checkout.hpp>
 #include <cstdlib>
 #include <filesystem>
 
@@ -14,7 +15,7 @@ namespace {
 using namespace world;
 namespace fs = std::filesystem;
 
-const fs::path kExamples = fs::path(TRACTUS_SOURCE_DIR) / "web/src/features/guide/scripts";
+const fs::path kExamples = fs::path(checkout::kSource) / "web/src/features/guide/scripts";
 
 class Scripts : public ::testing::Test {
  protected:

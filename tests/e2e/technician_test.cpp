@@ -7,6 +7,7 @@
 #include <sys/wait.h>
 
 #include <algorithm>
+#include <checkout.hpp>
 #include <fstream>
 #include <future>
 #include <set>
@@ -60,9 +61,9 @@ class Technician : public testing::Test {
 
   Said run(const std::string& before, const std::string& words) const {
     const fs::path out = folder_ / "out", err = folder_ / "err";
-    const std::string command = before + TRACTUS_BIN_DIR "/tractus-station " + words + " --data " +
-                                (folder_ / "st").string() + " --json </dev/null >" + out.string() +
-                                " 2>" + err.string();
+    const std::string command = before + std::string(checkout::kBin) + "/tractus-station " + words +
+                                " --data " + (folder_ / "st").string() + " --json </dev/null >" +
+                                out.string() + " 2>" + err.string();
     const int status = std::system(command.c_str());
     return {WIFEXITED(status) ? WEXITSTATUS(status) : -1,
             core::Json::parse(text_of(out), nullptr, false), text_of(err)};
@@ -89,11 +90,11 @@ class TechnicianAtTheLambda6 : public Technician {
   }
   std::string control_file() const { return (folder_ / "control").string(); }
   std::string on_usb() const {
-    return "TRACTUS_DHD_STANDIN=" + control_file() +
-           " umockdev-run --device " TRACTUS_SOURCE_DIR "/tests/support/dhd/lambda6.umockdev -- ";
+    return "TRACTUS_DHD_STANDIN=" + control_file() + " umockdev-run --device " +
+           std::string(checkout::kSource) + "/tests/support/dhd/lambda6.umockdev -- ";
   }
   Said lambda6(const std::string& words) const {
-    return run(on_usb(), words + " --device lambda6 --sdk " TRACTUS_STANDIN_DIR);
+    return run(on_usb(), words + " --device lambda6 --sdk " + checkout::kStandIn);
   }
   double force_N() const {
     return std::hypot(control_->force_N[0].load(), control_->force_N[1].load(),
@@ -170,10 +171,10 @@ TEST_F(TechnicianAtTheLambda6, AFaultInTheMiddleEndsAtZeroForceWithItsWord) {
 
 TEST_F(TechnicianAtTheLambda6, CtrlCEndsAtZeroForceAndLeavesNoReport) {
   const std::string log = (folder_ / "log").string();
-  const std::string command = "exec >" + log + " 2>&1; " + on_usb() +
-                              TRACTUS_BIN_DIR
+  const std::string command = "exec >" + log + " 2>&1; " + on_usb() + std::string(checkout::kBin) +
                               "/tractus-station self-test --for 1 --device lambda6 "
-                              "--sdk " TRACTUS_STANDIN_DIR " --data " +
+                              "--sdk " +
+                              std::string(checkout::kStandIn) + " --data " +
                               (folder_ / "st").string();
   pid_t shell = -1;
   const char* words[] = {"sh", "-c", command.c_str(), nullptr};

@@ -8,6 +8,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <checkout.hpp>
 #include <chrono>
 #include <limits>
 #include <random>
@@ -24,7 +25,7 @@ namespace {
 namespace fs = std::filesystem;
 using namespace world;
 using Clock = std::chrono::steady_clock;
-const int kKills = kills(120);
+const int kKills = kills(60);
 
 /// A station on the served case, and what it promised so far.
 class KilledStation {
@@ -65,7 +66,7 @@ class KilledStation {
       ::close(pipe_ends[0]);
       ::close(pipe_ends[1]);
       auto words = arguments(port, seed);
-      words.insert(words.begin(), TRACTUS_BIN_DIR "/tractus-station");
+      words.insert(words.begin(), std::string(checkout::kBin) + "/tractus-station");
       std::vector<char*> argv;
       for (auto& word : words) argv.push_back(word.data());
       argv.push_back(nullptr);

@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <checkout.hpp>
 #include <fstream>
 
 #include "core/file.hpp"
@@ -11,7 +12,7 @@ namespace tractus::fuzz {
 namespace fs = std::filesystem;
 
 std::vector<core::Bytes> seeds_of(const Target& target) {
-  const fs::path root(TRACTUS_SOURCE_DIR);
+  const fs::path root(checkout::kSource);
   std::vector<fs::path> files;
   for (const auto& seed : target.seeds) files.push_back(root / seed);
   const fs::path corpus = root / "tests/fuzz/corpora" / target.name;

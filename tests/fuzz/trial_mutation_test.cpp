@@ -1,6 +1,7 @@
 /// The fuzzer's promises on the same mutations each time.
 #include <gtest/gtest.h>
 
+#include <checkout.hpp>
 #include <random>
 
 #include "core/file.hpp"
@@ -12,7 +13,7 @@ namespace fuzz {
 namespace {
 
 core::Bytes golden(const std::string& name) {
-  return core::read_file(std::string(TRACTUS_SOURCE_DIR) + "/tests/golden/" + name).value();
+  return core::read_file(std::string(checkout::kSource) + "/tests/golden/" + name).value();
 }
 
 struct Golden {

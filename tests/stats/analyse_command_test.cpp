@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 
+#include <checkout.hpp>
 #include <cstdlib>
 #include <filesystem>
 
@@ -16,7 +17,7 @@ namespace {
 namespace fs = std::filesystem;
 using testing::HasSubstr;
 
-const std::string kSource = TRACTUS_SOURCE_DIR;
+const std::string kSource = checkout::kSource;
 const std::string kExample = kSource + "/shared/assessment/examples/probing-study/";
 const std::string kTrials =
     kSource + "/tests/golden/statistics-reference/data/sim_cohort_trials.csv";
@@ -36,7 +37,7 @@ class Analyse : public testing::Test {
   }
   /// Exit code of the tool, run in the folder; its output in out_ and err_.
   int run(const std::string& arguments) {
-    const std::string command = "cd '" + folder_.string() + "' && '" + TRACTUS_BIN_DIR +
+    const std::string command = "cd '" + folder_.string() + "' && '" + checkout::kBin +
                                 "/tractus' " + arguments + " >out.txt 2>err.txt";
     const int status = std::system(command.c_str());
     out_ = text_of("out.txt");

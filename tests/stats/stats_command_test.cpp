@@ -4,6 +4,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <checkout.hpp>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
@@ -19,7 +20,7 @@ namespace fs = std::filesystem;
 using testing::HasSubstr;
 
 const std::string kReference =
-    std::string(TRACTUS_SOURCE_DIR) + "/tests/golden/statistics-reference/";
+    std::string(checkout::kSource) + "/tests/golden/statistics-reference/";
 
 struct Ran {
   int exit = -1;
@@ -47,7 +48,7 @@ class Stats : public testing::Test {
   Ran run(const std::string& method, const std::string& data, const std::string& formula,
           const std::string& more = "") {
     const fs::path out = folder_ / "out", err = folder_ / "err";
-    const std::string command = std::string(TRACTUS_BIN_DIR) + "/tractus stats " + method +
+    const std::string command = std::string(checkout::kBin) + "/tractus stats " + method +
                                 " --data '" + data + "' --formula '" + formula + "' " + more +
                                 " >'" + out.string() + "' 2>'" + err.string() + "'";
     const int status = std::system(command.c_str());
@@ -64,7 +65,7 @@ class Stats : public testing::Test {
   /// A method with the options as they stand.
   Ran plain(const std::string& options) {
     const fs::path out = folder_ / "out", err = folder_ / "err";
-    const std::string command = std::string(TRACTUS_BIN_DIR) + "/tractus stats " + options + " >'" +
+    const std::string command = std::string(checkout::kBin) + "/tractus stats " + options + " >'" +
                                 out.string() + "' 2>'" + err.string() + "'";
     const int status = std::system(command.c_str());
     return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, text_of(out), text_of(err)};

@@ -19,7 +19,7 @@ using test_support::DatabaseKind;
 using test_support::TestDatabase;
 
 /// Rows that refer to others, to themselves, and hold every type there is in the schema.
-core::Result<void> furnish(Writing& tx) {
+core::Result<void> furnish_tables(Writing& tx) {
   const std::string kA(64, 'a');
   TRY(add_account(tx, {"1", "ada", Role::admin, "hash"}, 1));
   TRY(add_station(tx, {"s", "station-1"}, "token", 1));
@@ -38,7 +38,7 @@ core::Result<void> furnish(Writing& tx) {
 }
 
 /// Everything in it, by table, each row as text, in an order that no database chooses.
-std::map<std::string, std::multiset<std::string>> contents(Store& store) {
+std::map<std::string, std::multiset<std::string>> tables_of(Store& store) {
   std::map<std::string, std::multiset<std::string>> out;
   auto read = store.read([&](Reading& tx) -> core::Result<void> {
     auto tables = TRY(tx.tables());
@@ -80,31 +80,31 @@ TRACTUS_ON_BOTH_DATABASES(CopyRows);
 TEST_P(CopyRows, CarriesEveryRowThereAndBack) {
   const TestDatabase first(DatabaseKind::sqlite), second(GetParam()), third(DatabaseKind::sqlite);
   Store from = first.open(), to = second.open(), back = third.open();
-  ASSERT_TRUE(from.write(furnish));
+  ASSERT_TRUE(from.write(furnish_tables));
   auto there = copy(from, to);
   ASSERT_TRUE(there) << there.error().what;
-  EXPECT_EQ(contents(to), contents(from));
+  EXPECT_EQ(tables_of(to), tables_of(from));
   auto again = copy(to, back);
   ASSERT_TRUE(again) << again.error().what;
-  EXPECT_EQ(contents(back), contents(from));
+  EXPECT_EQ(tables_of(back), tables_of(from));
   EXPECT_EQ(*there, *again);
 }
 
 TEST_P(CopyRows, RefusesADatabaseThatHoldsSomethingAndLeavesItAsItIs) {
   const TestDatabase first(DatabaseKind::sqlite), second(GetParam());
   Store from = first.open(), to = second.open();
-  ASSERT_TRUE(from.write(furnish));
+  ASSERT_TRUE(from.write(furnish_tables));
   ASSERT_TRUE(to.write([](Writing& tx) { return add_station(tx, {"x", "y"}, "z", 1); }));
   auto refused = copy(from, to);
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().code, core::Errc::conflict);
-  EXPECT_EQ(contents(to).size(), 2u) << "the station, and the trail of it";
+  EXPECT_EQ(tables_of(to).size(), 2u) << "the station, and the trail of it";
 }
 
 TEST_P(CopyRows, ReferencesHoldAfterwards) {
   const TestDatabase first(DatabaseKind::sqlite), second(GetParam());
   Store from = first.open(), to = second.open();
-  ASSERT_TRUE(from.write(furnish));
+  ASSERT_TRUE(from.write(furnish_tables));
   ASSERT_TRUE(copy(from, to));
   auto dangling = to.write([](Writing& tx) { return add_session(tx, "token", "nobody", 5); });
   ASSERT_FALSE(dangling);

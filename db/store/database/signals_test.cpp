@@ -42,8 +42,8 @@ class Ear {
   std::vector<std::string> payloads_, senders_;
 };
 
-struct Opened {
-  explicit Opened(test_support::DatabaseKind kind) : database(kind), store(database.open()) {}
+struct Furnished {
+  explicit Furnished(test_support::DatabaseKind kind) : database(kind), store(database.open()) {}
   test_support::TestDatabase database;
   Store store;
 };
@@ -52,7 +52,7 @@ class SignalsContract : public test_support::BothDatabases {};
 TRACTUS_ON_BOTH_DATABASES(SignalsContract);
 
 TEST_P(SignalsContract, OneSendersArriveInOrderAndSayWhoSentThem) {
-  Opened db(GetParam());
+  Furnished db(GetParam());
   Ear ear;
   auto listening = db.store.signals().listen("live", ear.heard());
   ASSERT_TRUE(listening);
@@ -66,7 +66,7 @@ TEST_P(SignalsContract, OneSendersArriveInOrderAndSayWhoSentThem) {
 }
 
 TEST_P(SignalsContract, OfAWriteAreHeardWhenItCommitsAndNotWhenItFails) {
-  Opened db(GetParam());
+  Furnished db(GetParam());
   Ear ear;
   auto listening = db.store.signals().listen("jobs", ear.heard());
   ASSERT_TRUE(listening);
@@ -80,7 +80,7 @@ TEST_P(SignalsContract, OfAWriteAreHeardWhenItCommitsAndNotWhenItFails) {
 }
 
 TEST_P(SignalsContract, OfAnotherChannelAreNotHeard) {
-  Opened db(GetParam());
+  Furnished db(GetParam());
   Ear ear;
   auto listening = db.store.signals().listen("live", ear.heard());
   ASSERT_TRUE(listening);
@@ -90,7 +90,7 @@ TEST_P(SignalsContract, OfAnotherChannelAreNotHeard) {
 }
 
 TEST_P(SignalsContract, AListenerMaySendAndMayEndWhileOthersAreSpoken) {
-  Opened db(GetParam());
+  Furnished db(GetParam());
   Ear ear, second;
   Signals& signals = db.store.signals();
   auto answering = signals.listen("ask", [&](const Signal& signal) {
@@ -110,7 +110,7 @@ TEST_P(SignalsContract, AListenerMaySendAndMayEndWhileOthersAreSpoken) {
 }
 
 TEST_P(SignalsContract, OneThatIsTooLongIsRefused) {
-  Opened db(GetParam());
+  Furnished db(GetParam());
   const std::string most(Signals::kMostPayload_bytes, 'x');
   EXPECT_TRUE(db.store.signals().send("live", most));
   auto refused = db.store.signals().send("live", most + "x");

@@ -1,6 +1,7 @@
 #include "server/api/cohort/export.hpp"
 
 #include <algorithm>
+#include <checkout.hpp>
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
@@ -213,8 +214,8 @@ TEST_F(Export, TheExamplesInPythonAndRReadTheZip) {
       std::printf("not run, %s is not installed: %s\n", program, script);
       continue;
     }
-    const std::string command = std::string(program) + " " TRACTUS_SOURCE_DIR "/deploy/examples/" +
-                                script + " " + path.string() + " 2>&1";
+    const std::string command = std::string(program) + " " + checkout::kSource +
+                                "/deploy/examples/" + script + " " + path.string() + " 2>&1";
     std::FILE* out = ::popen(command.c_str(), "r");
     std::string said;
     std::array<char, 4096> piece{};

@@ -15,7 +15,7 @@ using testing::kCase;
 using testing::kPassword;
 using testing::PeopleTest;
 
-constexpr std::int64_t kHour_us = 3600ll * 1'000'000, kDay_us = 24 * kHour_us;
+constexpr std::int64_t kTokenHour_us = 3600ll * 1'000'000, kTokenDay_us = 24 * kTokenHour_us;
 constexpr auto kScopes = core::values<TokenScope>();
 using Headers = std::map<std::string, std::string>;
 
@@ -33,7 +33,7 @@ class ApiTokens : public PeopleTest {
   core::Json wish(const core::Json& scopes = {"lab:read"}) {
     return {{"name", "nightly export"},
             {"scopes", scopes},
-            {"expires_utc_us", now_ + 30 * kDay_us},
+            {"expires_utc_us", now_ + 30 * kTokenDay_us},
             {"password", kPassword}};
   }
   /// A token of the account, made by its route.
@@ -154,7 +154,7 @@ TEST_F(ApiTokens, AreMadeOnlyWithThePasswordAndSensibleFields) {
     return post("rex", "/tokens", body).status;
   };
   EXPECT_EQ(status("password", "a wrong password"), 403);
-  EXPECT_EQ(status("expires_utc_us", now_ + 367 * kDay_us), 400);
+  EXPECT_EQ(status("expires_utc_us", now_ + 367 * kTokenDay_us), 400);
   EXPECT_EQ(status("expires_utc_us", now_), 400);
   EXPECT_EQ(status("scopes", core::Json::array()), 400);
   EXPECT_EQ(status("scopes", {"everything"}), 400);
@@ -172,7 +172,7 @@ TEST_F(ApiTokens, AreMadeOnlyWithThePasswordAndSensibleFields) {
 TEST_F(ApiTokens, AreLimitedInNumber) {
   for (std::int64_t i = 1; i < store::kMaxApiTokens; ++i) made("rex", wish());
   EXPECT_EQ(post("rex", "/tokens", wish()).status, 409);
-  now_ += 31 * kDay_us;  // all but the first have expired
+  now_ += 31 * kTokenDay_us;  // all but the first have expired
   made("rex", wish());
 }
 
@@ -195,7 +195,7 @@ TEST_F(ApiTokens, NeedTheOneTimeCodeOfAnAccountThatHasThem) {
 
 TEST_F(ApiTokens, EndAtTheirDate) {
   const std::string token = made("rex", wish());
-  now_ += 30 * kDay_us - 1;
+  now_ += 30 * kTokenDay_us - 1;
   EXPECT_EQ(status_with(token), 200);
   now_ += 1;
   EXPECT_EQ(status_with(token), 401);

@@ -12,7 +12,7 @@ using core::Json;
 using core::Result;
 
 constexpr std::uint64_t kMaxRetention_bytes = 4096;
-constexpr std::size_t kMaxReason = 500;
+constexpr std::size_t kMaxRetentionReason = 500;
 constexpr std::int64_t kNoticeDay_us = 86'400'000'000;
 
 Json version_json(const store::RetentionVersion& of) {
@@ -72,7 +72,7 @@ Result<http::Response> set_retention(const Call& call) {
   const auto rules = TRY(store::RetentionRules::from_text(call.request.body, "body"));
   const auto json = TRY(core::parse_json(call.request.body, "body"));
   core::Fields fields(json, "body");
-  const std::string reason = fields.text("reason", kMaxReason);
+  const std::string reason = fields.text("reason", kMaxRetentionReason);
   for (const char* known :
        {"format", "inactive_years", "inactive_mode", "sign_ins_months", "notice_days"})
     fields.skip(known);

@@ -10,7 +10,7 @@ namespace {
 using core::Result;
 
 constexpr std::uint64_t kMaxLive_bytes = 4096;
-constexpr std::size_t kMaxReason = 300;
+constexpr std::size_t kMaxStopReason = 300;
 
 using Conversing = Result<std::shared_ptr<http::WebSocketHandler>>;
 
@@ -42,7 +42,7 @@ Result<http::Response> stop_trial(const Call& call) {
   auto json = TRY(core::parse_json(call.request.body, "body"));
   core::Fields fields(json, "body");
   wire::StationCommand command;
-  command.reason = fields.text("reason", kMaxReason);
+  command.reason = fields.text("reason", kMaxStopReason);
   if (command.reason.find_first_not_of(" \t\r\n") == std::string::npos)
     fields.wrong("reason", "a reason is expected; the person at the station reads it");
   TRY(fields.done());

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <checkout.hpp>
 #include <cmath>
 #include <filesystem>
 #include <random>
@@ -95,7 +96,7 @@ TEST(BurntText, IsNotFoundInNoiseBoneOrSimulatedTissue) {
 
 TEST(BurntText, IsNotFoundInTheRealScansOfTheTests) {
   int read = 0;
-  const std::filesystem::path data = TRACTUS_SOURCE_DIR "/tests/data/ct";
+  const std::filesystem::path data = std::string(checkout::kSource) + "/tests/data/ct";
   for (const auto& entry : std::filesystem::recursive_directory_iterator(data)) {
     const std::string name = entry.path().filename().string();
     if (name != "ct_cropped.nii.gz" && name != "example_ct.nii.gz" &&

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <checkout.hpp>
 #include <cstring>
 
 #include "tests/support/nifti_file.hpp"
@@ -246,8 +247,7 @@ TEST(Nifti, ImportsTheThreeRealCtsWhereTheirHeadersSay) {
              -1078,
              3343}};
   for (const RealCt& ct : cts) {
-    const auto in =
-        volume_io::read_volume(fs::path(TRACTUS_SOURCE_DIR) / "tests/data/ct" / ct.file);
+    const auto in = volume_io::read_volume(fs::path(checkout::kSource) / "tests/data/ct" / ct.file);
     ASSERT_TRUE(in) << in.error().what;
     const auto& g = in->volume.geometry;
     ASSERT_EQ(g.dims, ct.dims);

@@ -1,5 +1,6 @@
 #include "bench/feelability/pedicles.hpp"
 
+#include <checkout.hpp>
 #include <cstdio>
 #include <cstdlib>
 #include <map>
@@ -39,7 +40,7 @@ const volume::Volume& ct_of(const Pedicle& pedicle) {
   static std::map<std::string, volume::Volume> read;
   const auto known = read.find(pedicle.ct);
   if (known != read.end()) return known->second;
-  auto in = volume_io::read_volume(std::filesystem::path(TRACTUS_SOURCE_DIR) / "tests/data/ct" /
+  auto in = volume_io::read_volume(std::filesystem::path(checkout::kSource) / "tests/data/ct" /
                                    pedicle.ct);
   if (!in) {
     std::fprintf(stderr, "%s\n", in.error().what.c_str());

@@ -9,6 +9,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <checkout.hpp>
 #include <fstream>
 #include <sstream>
 
@@ -33,7 +34,7 @@ struct Child {
 Child spawn(const std::vector<std::string>& arguments, const fs::path& log) {
   int ends[2];
   if (::pipe2(ends, O_CLOEXEC) != 0) return {};
-  const std::string program = std::string(TRACTUS_BIN_DIR) + "/tractus-server";
+  const std::string program = std::string(checkout::kBin) + "/tractus-server";
   std::vector<char*> argv{const_cast<char*>(program.c_str())};
   for (const std::string& one : arguments) argv.push_back(const_cast<char*>(one.c_str()));
   argv.push_back(nullptr);

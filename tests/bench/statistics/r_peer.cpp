@@ -1,6 +1,7 @@
 #include "bench/statistics/r_peer.hpp"
 
 #include <algorithm>
+#include <checkout.hpp>
 #include <cmath>
 #include <cstdio>
 #include <fstream>
@@ -8,7 +9,7 @@
 
 namespace tractus::bench {
 namespace {
-const std::string kSource = TRACTUS_SOURCE_DIR;
+const std::string kSource = checkout::kSource;
 }
 
 Answers r_answers(const std::filesystem::path& folder, long rows) {

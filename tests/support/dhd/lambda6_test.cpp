@@ -7,6 +7,7 @@
 
 #include <atomic>
 #include <cerrno>
+#include <checkout.hpp>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -57,7 +58,7 @@ class Lambda6 : public testing::Test {
 
   void plug_in() {
     static const std::string text =
-        text_of_file(TRACTUS_SOURCE_DIR "/tests/support/dhd/lambda6.umockdev");
+        text_of_file(std::string(checkout::kSource) + "/tests/support/dhd/lambda6.umockdev");
     GError* error = nullptr;
     ASSERT_TRUE(umockdev_testbed_add_from_string(bed_, text.c_str(), &error))
         << (error ? error->message : "");
@@ -68,7 +69,7 @@ class Lambda6 : public testing::Test {
     umockdev_testbed_remove_device(bed_, kDevice.c_str());
   }
   std::unique_ptr<Device> made(Homing homing = Homing::refuse) {
-    return std::move(find("lambda6")->make({.sdk = TRACTUS_STANDIN_DIR, .homing = homing})->device);
+    return std::move(find("lambda6")->make({.sdk = checkout::kStandIn, .homing = homing})->device);
   }
   /// Waits for another thread's doing, for at most five seconds.
   static bool eventually(const std::function<bool()>& holds) {

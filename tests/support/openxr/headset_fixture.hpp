@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <checkout.hpp>
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
@@ -31,7 +32,8 @@ class WithRuntime : public testing::Test {
     ASSERT_NE(mapped, nullptr);
     control_ = new (mapped) fakexr::Control;
     control_->paced = 0;
-    ::setenv("XR_RUNTIME_JSON", TRACTUS_STANDIN_DIR "/openxr_runtime.json", 1);
+    ::setenv("XR_RUNTIME_JSON", (std::string(checkout::kStandIn) + "/openxr_runtime.json").c_str(),
+             1);
     on_x_ = std::getenv("TRACTUS_TEST_ON_X") != nullptr;
     if (!on_x_) ::unsetenv("DISPLAY");
     std::filesystem::create_directories(folder_);

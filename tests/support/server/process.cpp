@@ -11,6 +11,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <checkout.hpp>
 #include <csignal>
 #include <fstream>
 
@@ -32,7 +33,7 @@ struct Started {
 Started start(const std::string& name, const std::vector<std::string>& arguments) {
   int ends[2];
   EXPECT_EQ(::pipe2(ends, O_CLOEXEC), 0);
-  const std::string program = std::string(TRACTUS_BIN_DIR) + "/" + name;
+  const std::string program = std::string(checkout::kBin) + "/" + name;
   std::vector<char*> argv{const_cast<char*>(program.c_str())};
   for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
   argv.push_back(nullptr);
