@@ -2,16 +2,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <atomic>
 #include <cctype>
 #include <chrono>
-#include <thread>
 
 #include "core/progress.hpp"
 #include "core/try.hpp"
 #include "station/app/checks.hpp"
 #include "station/app/commands.hpp"
 #include "station/app/exchange.hpp"
+#include "station/loop/loop_thread.hpp"
 #include "station/loop/program_player.hpp"
 #include "station/session/rig_entry.hpp"
 
@@ -59,22 +58,21 @@ Result<devices::MadeRig> rig_for(const Options& options) {
                         .specimen = options.specimen});
 }
 
-/// Plays in a thread of its own, so that a terminal never holds up a tick.
+/// Plays in a thread of its own with real-time priority, as a trial does: neither a terminal nor
+/// another program may hold up a tick.
 Result<std::vector<trial::ProbingMeasurement>> played_shown(loop::ProgramPlayer& player,
                                                             const trial::MotionProgram& program,
-                                                            int repetitions) {
+                                                            const Options& options) {
   const auto shown = core::terminal_progress("Playing");
   loop::Playing playing;
-  std::atomic<bool> done = false;
   Result<std::vector<trial::ProbingMeasurement>> out = Error{Errc::cancelled, "stopped"};
-  std::jthread works([&] {
-    out = player.play(program, repetitions, playing);
-    done = true;
-  });
-  while (!done) {
+  loop::LoopThread works(loop::Pace::real_time,
+                         [&] { out = player.play(program, options.repetitions, playing); });
+  for (const std::string& warning : works.grant().warnings)
+    if (!options.json) fmt::print(stderr, "{}\n", warning);
+  works.go();
+  while (!works.ended_within(std::chrono::milliseconds(50)))
     if (asked_to_stop() || (shown && !shown(playing.share))) playing.stop = true;
-    std::this_thread::sleep_for(std::chrono::milliseconds(50));
-  }
   works.join();
   return out;
 }
@@ -105,7 +103,7 @@ Result<int> play_program(const Options& options) {
   TRY(session::bring_to_entry(*made.device, clock, options.rig.rate_Hz));
   loop::ProbingGuard guard(limits, identity.travel_m, 1.0 / options.rig.rate_Hz);
   loop::ProgramPlayer player({clock, *made.device, guard}, options.rig.rate_Hz);
-  auto played = TRY(played_shown(player, program, options.repetitions));
+  auto played = TRY(played_shown(player, program, options));
   TRY(session::bring_to_entry(*made.device, clock, options.rig.rate_Hz));
   made.device->close();
   const std::size_t trials = played.size(), samples = played.front().t_s.size();
