@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 
+#include <checkout.hpp>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
@@ -19,8 +20,8 @@ namespace {
 namespace fs = std::filesystem;
 using testing::HasSubstr;
 
-const std::string kTractus = TRACTUS_BIN_DIR "/tractus";
-const std::string kGolden = TRACTUS_SOURCE_DIR "/tests/golden/palpation";
+const std::string kTractus = std::string(checkout::kBin) + "/tractus";
+const std::string kGolden = std::string(checkout::kSource) + "/tests/golden/palpation";
 
 struct Ran {
   int code;
@@ -109,13 +110,13 @@ class Replay : public testing::Test {
 };
 
 TEST_F(Replay, AgreesWithTheOracleOnThePublishedField) {
-  expect_agreement("--trials 4 --seconds 0.5 --field paper", 0.9);
+  expect_agreement("--trials 4 --seconds 0.25 --field paper", 0.9);
 }
 
 // The potential's valleys are finer than the averaged vectors of the published field: more places
 // to rest.
 TEST_F(Replay, AgreesWithTheOracleOnThePotentialField) {
-  expect_agreement("--trials 4 --seconds 0.5 --field potential", 0.25);
+  expect_agreement("--trials 4 --seconds 0.25 --field potential", 0.25);
 }
 
 TEST_F(Replay, WritesAllItPromisesAndTheSameTwice) {

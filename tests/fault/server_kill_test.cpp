@@ -17,7 +17,7 @@ namespace tractus {
 namespace {
 using namespace fault;
 
-const int kKills = kills(220);
+const int kKills = kills(90);
 
 TEST(KilledAtAnyMoment, TheServerLosesNothingItAcknowledgedAndKeepsNoHalfTrial) {
   KilledServer station;

@@ -9,7 +9,39 @@ namespace tractus {
 namespace test_support {
 namespace {
 
-/// The database that others are copied from, its schema up to date.
+namespace fs = std::filesystem;
+
+/// In memory where there is room: these need not outlast the machine.
+fs::path new_folder() {
+  constexpr std::uintmax_t kRoom_bytes = 512u << 20;
+  std::error_code failure;
+  const auto space = fs::space("/dev/shm", failure);
+  const bool fits = !failure && space.available >= kRoom_bytes;
+  const fs::path folder = (fits ? fs::path("/dev/shm") : fs::path(::testing::TempDir())) /
+                          ("tractus-" + core::new_id());
+  fs::create_directories(folder);
+  return folder;
+}
+
+/// SQLite's file that others are copied from, its schema up to date; gone with the program.
+const fs::path& file_with_schema() {
+  struct Made {
+    fs::path folder = new_folder();
+    fs::path file = folder / "tractus.db";
+    Made() {
+      auto opened = store::Store::open(file);
+      core::require(bool(opened), opened ? "" : opened.error().what.c_str());
+    }
+    ~Made() {
+      std::error_code ignored;
+      fs::remove_all(folder, ignored);
+    }
+  };
+  static const Made made;
+  return made.file;
+}
+
+/// PostgreSQL's database that others are copied from, its schema up to date.
 const std::string& with_schema() {
   static const std::string name = [] {
     std::string made = postgres_server().add_database();
@@ -30,8 +62,8 @@ DatabaseKind database_kind() {
 
 TestDatabase::TestDatabase(DatabaseKind kind, Content content) : kind_(kind) {
   if (kind == DatabaseKind::sqlite) {
-    folder_ = std::filesystem::path(::testing::TempDir()) / ("tractus-" + core::new_id());
-    std::filesystem::create_directories(folder_);
+    folder_ = new_folder();
+    if (content == Content::schema) fs::copy_file(file_with_schema(), folder_ / "tractus.db");
     return;
   }
   name_ = postgres_server().add_database(content == Content::schema ? with_schema() : "template0");
