@@ -30,8 +30,7 @@ set(TRACTUS_HOT_FOLDERS shared/core shared/math shared/statistics shared/volume 
 add_library(tractus_options INTERFACE)
 target_compile_options(tractus_options INTERFACE -Wall -Wextra -Wconversion -Wshadow -Werror
   $<$<CXX_COMPILER_ID:GNU>:-Wno-stringop-overflow$<SEMICOLON>-Wno-restrict>  # gcc 12 at -O3 is wrong about buffers of fmt and std::string
-  -march=${TRACTUS_ARCH} -fno-math-errno
-  -fmacro-prefix-map=${CMAKE_SOURCE_DIR}/=)  # __FILE__ is the same in every checkout, for the compiler cache
+  -march=${TRACTUS_ARCH} -fno-math-errno)
 target_link_libraries(tractus_options INTERFACE Threads::Threads fmt::fmt)
 find_program(TRACTUS_MOLD mold)
 if(TRACTUS_MOLD)  # links the test programs several times faster than GNU ld
@@ -75,6 +74,9 @@ if(TRACTUS_PCH)
     target_link_libraries(tractus_precompiled_test PRIVATE GTest::gmock GTest::gtest)
   endif()
 endif()
+
+# __FILE__ is the same in every checkout, for the compiler cache. After the precompiled header, which would hold the option itself.
+add_compile_options(-fmacro-prefix-map=${CMAKE_SOURCE_DIR}/=)
 
 option(TRACTUS_UNITY "Compile the files of a folder several at a time" ON)
 set(TRACTUS_UNITY_FILES 16 CACHE STRING "How many at a time: three times as many take half of the time, but more is compiled anew after a change")
