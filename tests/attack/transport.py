@@ -168,18 +168,19 @@ def cache_control(world):
 
 
 def finished_diagnosis(world):
-    """A diagnosis of the model lab with its report; measurements and model from tests/data."""
+    """A diagnosis of the model lab with its report; model and the first rows of the measurements from tests/data."""
     data = ROOT / "tests/data/force/cable_tool_odbl"
-    files = {path.name: path.read_bytes() for path in (data / "drum/light_fast").iterdir()}
+    rows = 1200  # the report is what is looked at, and the lab takes a minute for all of them
+    files = {path.name: b"".join(path.read_bytes().splitlines(keepends=True)[:rows + 1]) for path in (data / "drum/light_fast").iterdir()}
     researcher = world.people["researcher"]
     kept = researcher.must("POST", "/lab/measurements?name=cable", zipped(files), kind="application/octet-stream")
     model = researcher.must("POST", "/lab/models", (data / "model.json").read_bytes())
     run = researcher.must("POST", "/lab/diagnoses", {"model": model["id"], "measurements": kept["id"]})["id"]
-    for _ in range(900):
+    for _ in range(3000):
         if researcher.must("GET", f"/lab/runs/{run}")["state"] not in ("queued", "running"):
             return run
         time.sleep(0.1)
-    raise NotTried("the lab's diagnosis takes more than 90 s")
+    raise NotTried("the lab's diagnosis takes more than 300 s")
 
 
 @attack("a page of another site sends a person's cookie: without X-Tractus nothing may change")
