@@ -11,14 +11,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// In memory where there is room: these need not outlast the machine.
 fs::path new_folder() {
-  constexpr std::uintmax_t kRoom_bytes = 512u << 20;
-  std::error_code failure;
-  const auto space = fs::space("/dev/shm", failure);
-  const bool fits = !failure && space.available >= kRoom_bytes;
-  const fs::path folder = (fits ? fs::path("/dev/shm") : fs::path(::testing::TempDir())) /
-                          ("tractus-" + core::new_id());
+  const fs::path folder = place_of(Durable::no) / ("tractus-" + core::new_id());
   fs::create_directories(folder);
   return folder;
 }

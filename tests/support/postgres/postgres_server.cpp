@@ -42,16 +42,6 @@ fs::path newest_programs() {
   return best;
 }
 
-/// What need not last is kept in memory where there is room; a socket's path must be short.
-fs::path place_of(Durable durable) {
-  constexpr std::uintmax_t kRoom_bytes = 512u << 20;
-  std::error_code failure;
-  const fs::path memory = "/dev/shm";
-  const auto space = fs::space(memory, failure);
-  const bool fits = !failure && space.available >= kRoom_bytes;
-  return durable == Durable::no && fits && ::access(memory.c_str(), W_OK) == 0 ? memory : "/tmp";
-}
-
 /// What a test program that was killed has left: clusters whose server is gone.
 void sweep(const fs::path& place) {
   std::error_code failure;
@@ -98,6 +88,15 @@ std::string tail_of(const fs::path& log) {
 }
 
 }  // namespace
+
+fs::path place_of(Durable durable) {
+  constexpr std::uintmax_t kRoom_bytes = 512u << 20;
+  std::error_code failure;
+  const fs::path memory = "/dev/shm";
+  const auto space = fs::space(memory, failure);
+  const bool fits = !failure && space.available >= kRoom_bytes;
+  return durable == Durable::no && fits && ::access(memory.c_str(), W_OK) == 0 ? memory : "/tmp";
+}
 
 PostgresServer::PostgresServer(Durable durable)
     : programs_(newest_programs()),

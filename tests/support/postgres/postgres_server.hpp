@@ -12,6 +12,10 @@ namespace tractus::test_support {
 /// Whether what is committed must outlast the server's death: only then does it flush to the disk.
 enum class Durable { no, yes };
 
+/// A folder to make others in: in memory for what need not last, where there is room; else /tmp,
+/// for a socket's path must be short.
+std::filesystem::path place_of(Durable durable);
+
 /// A cluster made by initdb in a folder of its own under /tmp, listening on a Unix socket there and
 /// nowhere else. When the test runs as root, it runs as `postgres`, or `nobody`, as it must. Ends
 /// with this object, and with the test program however that ends.
