@@ -45,6 +45,14 @@ std::size_t files_in(const fs::path& folder) {
   return count;
 }
 
+/// The number of files in a folder once it is `wanted`, or after 5 s: the server deletes the file of
+/// a body after it sent the answer to it.
+std::size_t files_awaited_in(const fs::path& folder, std::size_t wanted) {
+  for (int tries = 0; tries < 100 && files_in(folder) != wanted; ++tries)
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  return files_in(folder);
+}
+
 class PrivateFiles : public ::testing::Test {
  protected:
   void hand_over(Client& client) const {
@@ -124,7 +132,7 @@ TEST_F(PrivateFiles, LargeBodiesAreNotKeptInMemory) {
     });
   for (auto& sender : senders) sender.join();
   EXPECT_LT(server.peak_memory_bytes(), before + kBody_bytes) << "less than one of four bodies";
-  EXPECT_EQ(files_in(world_.data / "scratch"), 0u);
+  EXPECT_EQ(files_awaited_in(world_.data / "scratch", 0), 0u);
   EXPECT_EQ(server.stop(), 0);
 }
 
@@ -165,17 +173,13 @@ TEST_F(PrivateFiles, OneAccountCannotFillTheScratchFolder) {
     std::vector<std::unique_ptr<Waiting>> held;
     for (int i = 0; i < 6; ++i)
       held.push_back(std::make_unique<Waiting>(server.port(), admin, kLargest));
-    for (int tries = 0; tries < 100 && files_in(world_.data / "scratch") < 6; ++tries)
-      std::this_thread::sleep_for(std::chrono::milliseconds(50));
-    EXPECT_EQ(files_in(world_.data / "scratch"), 6u);
+    EXPECT_EQ(files_awaited_in(world_.data / "scratch", 6), 6u);
     const RawAnswer refused = send_raw(server.port(), Waiting::text(admin, kLargest), 3000);
     EXPECT_TRUE(refused.text.starts_with("HTTP/1.1 503")) << refused.text;
     EXPECT_NE(refused.text.find("your transfers in progress use"), std::string::npos)
         << refused.text;
   }
-  for (int tries = 0; tries < 100 && files_in(world_.data / "scratch") > 0; ++tries)
-    std::this_thread::sleep_for(std::chrono::milliseconds(50));
-  EXPECT_EQ(files_in(world_.data / "scratch"), 0u) << "whoever hangs up leaves nothing";
+  EXPECT_EQ(files_awaited_in(world_.data / "scratch", 0), 0u) << "whoever hangs up leaves nothing";
   Headers whole = admin;
   whole["Content-Type"] = "application/zip";
   EXPECT_EQ(client.ask("POST", "/api/v1/lab/measurements?name=x", whole, "PKx").status, 400);
