@@ -23,6 +23,7 @@ struct Round {
   Presence& presence;
   const session::StationFolder& folder;
   Trainee& trainee;
+  AssignedTally& tally;
   int number = 0;  ///< of this call, from 0
 };
 
@@ -51,7 +52,7 @@ core::Result<std::shared_ptr<const session::PreparedCase>> prepare_assigned(
 /// One trial on a case: the burr makes the channel, or the probe feels one and its walls are asked
 /// for.
 core::Result<TrialReport> work_on_bone(const Round& round, const AssignedWork& work) {
-  const auto& [options, presence, folder, trainee, number] = round;
+  const auto& [options, presence, folder, trainee, tally, number] = round;
   const AssignedTrial& trial = *work.trial;
   const auto made = TRY(prepare_assigned(options, folder, trial));
   const std::shared_ptr<const session::PreparedCase>& prepared = made;
@@ -87,7 +88,7 @@ core::Result<TrialReport> work_on_bone(const Round& round, const AssignedWork& w
 }
 
 core::Result<TrialReport> probe(const Round& round, const AssignedWork& work) {
-  const auto& [options, presence, folder, trainee, number] = round;
+  const auto& [options, presence, folder, trainee, tally, number] = round;
   auto token = TRY(token_of(options));
   const study::StationKey key(core::sha256(core::bytes_of(token)));
   const AssignedTrial& trial = *work.trial;
@@ -125,6 +126,7 @@ core::Result<TrialReport> run_assigned_trial(const Round& round, const AssignedW
     return core::Error{core::Errc::bad_input,
                        fmt::format("the next trial is for {}: --device {} is not for that",
                                    trial::name(work.trial->rig), device)};
+  round.tally.unstarted.clear();
   auto report = probing ? probe(round, work) : work_on_bone(round, work);
   if (report) round.presence.done(*report);
   return report;
@@ -156,17 +158,19 @@ NextWork assigned_work(const Options& options, const session::StationFolder& fol
   };
 }
 
-core::Result<AssignedTally> do_assigned(const Options& options, Presence& presence,
-                                        const session::StationFolder& folder, const NextWork& next,
-                                        Trainee& trainee) {
-  AssignedTally tally;
+core::Result<void> do_assigned(const Options& options, Presence& presence,
+                               const session::StationFolder& folder, const NextWork& next,
+                               Trainee& trainee, AssignedTally& tally) {
   bool sent = true;
   for (int i = 0; trainee.may_begin(); ++i) {
-    const Round round{options, presence, folder, trainee, i};
+    const Round round{options, presence, folder, trainee, tally, i};
     auto work = TRY(tried(trainee, Stage::server, [&] { return next(sent); }));
     tally.left = work.left;
-    if (!work.trial || i == options.trials || !trainee.starts(work)) return tally;
+    if (!work.trial) return {};
     const AssignedTrial& trial = *work.trial;
+    // A channel that was drilled here is felt here.
+    if (trial.drilled.empty()) tally.unstarted = trial.slot;
+    if (i == options.trials || !trainee.starts(work)) return {};
     auto report =
         TRY(tried(trainee, Stage::trial, [&] { return run_assigned_trial(round, work); }));
     tally.trials.push_back({{"trial_id", report.trial_id},
@@ -178,9 +182,9 @@ core::Result<AssignedTally> do_assigned(const Options& options, Presence& presen
     if (!report.headset.is_null()) tally.trials.back()["headset"] = report.headset;
     tally.faulted = !report.complete;
     sent = bool(hand_over_all(options, folder));
-    if (!trainee.goes_on(work, report, sent)) return tally;
+    if (!trainee.goes_on(work, report, sent)) return {};
   }
-  return tally;
+  return {};
 }
 
 }  // namespace app

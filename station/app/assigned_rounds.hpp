@@ -47,6 +47,7 @@ struct AssignedTally {
   core::Json trials = core::Json::array();
   std::uint64_t left = 0;
   bool faulted = false;
+  std::string unstarted = {};  ///< slot of a trial that was given and not begun; empty: none
 };
 
 /// Where the next trial comes from. @param all_sent  the server has every trial that was done
@@ -55,9 +56,10 @@ using NextWork = std::function<core::Result<wire::AssignedWork>(bool all_sent)>;
 NextWork assigned_work(const Options& options, const session::StationFolder& folder,
                        uplink::Server& server, const uplink::Ticket& ticket);
 
-/// Errors: those of `next`, the device's, the disk's, those of the trainee's answer.
-core::Result<AssignedTally> do_assigned(const Options& options, Presence& presence,
-                                        const session::StationFolder& folder, const NextWork& next,
-                                        Trainee& trainee);
+/// Errors: those of `next`, the device's, the disk's, those of the trainee's answer; `tally` then
+/// holds what was done before.
+core::Result<void> do_assigned(const Options& options, Presence& presence,
+                               const session::StationFolder& folder, const NextWork& next,
+                               Trainee& trainee, AssignedTally& tally);
 
 }  // namespace tractus::app

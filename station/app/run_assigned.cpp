@@ -79,20 +79,20 @@ core::Result<int> run_assigned(const Options& options) {
   auto ticket = TRY(uplink::sign_in(*server, options.badge, pin));
   Presence presence(options, folder);
   AtTerminal trainee(options, presence);
-  auto tally = do_assigned(options, presence, folder,
-                           assigned_work(options, folder, *server, ticket), trainee);
-  uplink::sign_out(*server, ticket);
-  if (!tally) return tally.error();
+  AssignedTally tally;
+  const auto done = do_assigned(options, presence, folder,
+                                assigned_work(options, folder, *server, ticket), trainee, tally);
+  uplink::sign_out(*server, ticket, tally.unstarted);
+  TRY(done);
   if (options.json)
     fmt::print(
         "{}\n",
-        core::Json{{"name", ticket.name}, {"trials", tally->trials}, {"left", tally->left}}.dump(
-            2));
+        core::Json{{"name", ticket.name}, {"trials", tally.trials}, {"left", tally.left}}.dump(2));
   else
     fmt::print("{}: {}\n", ticket.name,
-               tally->left == 0 ? "nothing is left to be done"
-                                : fmt::format("{} trials are left", tally->left));
-  return tally->faulted ? 1 : 0;
+               tally.left == 0 ? "nothing is left to be done"
+                               : fmt::format("{} trials are left", tally.left));
+  return tally.faulted ? 1 : 0;
 }
 
 }  // namespace app

@@ -187,7 +187,7 @@ void tell_sign_in_error(Desk& desk, const core::Error& error) {
   });
 }
 
-/// Trials that wait are sent again while nobody is signed in. That the server is away is no fault.
+/// That the server is away is no fault.
 void send_waiting(const Kiosk& kiosk) {
   if (auto sent = hand_over(kiosk.options, kiosk.folder); !sent)
     log_line(kiosk.desk, "nothing was handed over: " + sent.error().what);
@@ -203,17 +203,23 @@ bool someone_acts(const Machine& machine) {
   return machine.screen() == Screen::checking || machine.screen() == Screen::testing;
 }
 
-/// Nothing when the program is to end.
-std::optional<kiosk::Credentials> next_credentials(const Kiosk& kiosk) {
+/// Until `done` holds; meanwhile what waits is sent again and again. False when the program is to
+/// end.
+bool wait_and_send(const Kiosk& kiosk, const std::function<bool(const Machine&)>& done) {
   while (!asked_to_stop()) {
     const bool waits = trials_waiting(kiosk.folder) > 0;
     const Instant_ns again = kiosk.clock.now() + kSendAgain_ns;
-    const bool given = kiosk.desk.wait(
-        someone_acts, [&] { return asked_to_stop() || (waits && kiosk.clock.now() > again); });
-    if (!given) {
-      if (!asked_to_stop()) send_waiting(kiosk);
-      continue;
-    }
+    if (kiosk.desk.wait(done,
+                        [&] { return asked_to_stop() || (waits && kiosk.clock.now() > again); }))
+      return true;
+    if (!asked_to_stop()) send_waiting(kiosk);
+  }
+  return false;
+}
+
+/// Nothing when the program is to end.
+std::optional<kiosk::Credentials> next_credentials(const Kiosk& kiosk) {
+  while (wait_and_send(kiosk, someone_acts)) {
     if (kiosk.desk.look([](const Machine& m) { return m.screen() == Screen::testing; })) {
       test_for_technician(kiosk.options, kiosk.folder, kiosk.presence, kiosk.desk);
       continue;
@@ -228,14 +234,15 @@ std::optional<kiosk::Credentials> next_credentials(const Kiosk& kiosk) {
 /// Somebody who is signed in, until they have signed out.
 void do_trials(const Kiosk& kiosk, const NextWork& next, const uplink::Ticket* ticket) {
   AtKiosk trainee(kiosk, ticket);
-  const auto tally = do_assigned(kiosk.options, kiosk.presence, kiosk.folder, next, trainee);
-  if (!tally) log_line(kiosk.desk, tally.error().what);
+  AssignedTally tally;
+  const auto done = do_assigned(kiosk.options, kiosk.presence, kiosk.folder, next, trainee, tally);
+  if (!done) log_line(kiosk.desk, done.error().what);
   const bool left = kiosk.desk.look([](const Machine& machine) { return machine.leaves(); });
-  if (tally && !left && !asked_to_stop()) {
+  if (done && !left && !asked_to_stop()) {
     kiosk.desk.tell([](Machine& machine, Instant_ns now) { machine.complete(now); });
-    kiosk.desk.wait([](const Machine& machine) { return machine.leaves(); }, asked_to_stop);
+    wait_and_send(kiosk, [](const Machine& machine) { return machine.leaves(); });
   }
-  if (ticket) uplink::sign_out(kiosk.server, *ticket);
+  if (ticket) uplink::sign_out(kiosk.server, *ticket, tally.unstarted);
   const auto lines = newest_trials(kiosk.folder);
   kiosk.desk.tell([&](Machine& machine, Instant_ns) { machine.trials(lines); });
   kiosk.presence.is(Presence::State::idle);

@@ -38,8 +38,10 @@ core::Result<wire::TrialResult> trial_result(Server& server, const Ticket& ticke
   return wire::TrialResult::from_json(json, "the server's result: ");
 }
 
-void sign_out(Server& server, const Ticket& ticket) {
-  [[maybe_unused]] const auto said = asked(server, "sign-out", {{"ticket", ticket.text}});
+void sign_out(Server& server, const Ticket& ticket, const std::string& unstarted) {
+  core::Json body{{"ticket", ticket.text}};
+  if (!unstarted.empty()) body["unstarted"] = unstarted;
+  [[maybe_unused]] const auto said = asked(server, "sign-out", body);
 }
 
 }  // namespace uplink

@@ -20,6 +20,8 @@ core::Result<wire::AssignedWork> next_trial(Server& server, const Ticket& ticket
 core::Result<wire::TrialResult> trial_result(Server& server, const Ticket& ticket,
                                              const std::string& trial_id);
 /// What cannot be said now ends by itself.
-void sign_out(Server& server, const Ticket& ticket);
+/// @param unstarted  slot of the trial that was read and not begun, which another station can then
+///                   have; empty if there is none
+void sign_out(Server& server, const Ticket& ticket, const std::string& unstarted);
 
 }  // namespace tractus::uplink

@@ -244,6 +244,14 @@ core::Result<std::uint64_t> release_slots(Writing& tx, const SeriesId& id,
   return held.size();
 }
 
+core::Result<void> release_unstarted_slot(Writing& tx, const Slot& slot,
+                                          const std::string& station_id, const AuditStamp& stamp) {
+  if (slot.state != SlotState::taken || slot.station_id != station_id) return {};
+  auto announced = TRY(tx.query("select count(*) from study_trials where slot_id = ?", {slot.id}));
+  if (announced.front().integer(0) > 0) return {};
+  return release_slot(tx, slot, stamp);
+}
+
 core::Result<std::optional<Slot>> slot_of(Reading& tx, const std::string& slot_id) {
   return first(slots_where(tx, "where k.id = ?", {slot_id}));
 }

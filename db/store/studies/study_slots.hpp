@@ -57,6 +57,10 @@ core::Result<Taken> take_slots(Writing& tx, const SeriesId& id, const Participan
 core::Result<std::uint64_t> release_slots(Writing& tx, const SeriesId& id,
                                           const std::string& participant, const AuditStamp& stamp);
 
+/// Releases one slot that the station has taken, unless a trial was announced for it.
+core::Result<void> release_unstarted_slot(Writing& tx, const Slot& slot,
+                                          const std::string& station_id, const AuditStamp& stamp);
+
 core::Result<std::optional<Slot>> slot_of(Reading& tx, const std::string& slot_id);
 /// The slot that a trial was announced for; none for a trial of no study.
 /// Was the slot ever handed out to the station of this name? Of one that was released and handed

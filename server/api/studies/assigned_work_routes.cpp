@@ -104,11 +104,31 @@ Result<store::Account> holder(const Call& call, std::string& hash) {
   return holder_of(call, hash);
 }
 
+/// Releases a slot that was handed out to the calling station for this trainee and that has no
+/// trial, so that the trainee can go on at another station. Any other slot stays as it is.
+Result<void> release_unstarted(store::Writing& tx, const Call& call, const store::Account& account,
+                               const std::string& slot_id) {
+  auto slot = TRY(store::slot_of(tx, slot_id));
+  if (!slot) return {};
+  auto id = store::find_assignment(tx, slot->study_id);
+  if (!id) return {};  // of a study, whose slots a researcher releases
+  auto participant = TRY(store::participant_for(tx, *id, account.id));
+  if (slot->participant != participant) return {};
+  return store::release_unstarted_slot(tx, *slot, call.caller.id,
+                                       {call.caller.name, call.backend.now_utc_us()});
+}
+
 Result<http::Response> sign_out_at_station(const Call& call) {
-  std::string hash;
-  TRY(holder(call, hash));
-  TRY(call.backend.store.write(
-      [&](store::Writing& tx) { return store::remove_session(tx, hash); }));
+  auto json = TRY(core::parse_json(call.request.body, "body"));
+  core::Fields fields(json, "body");
+  const std::string hash = ticket_hash(call, fields.text("ticket", 64));
+  const std::string unstarted = fields.text_or("unstarted", "", 64);
+  TRY(fields.done());
+  auto account = TRY(holder_of(call, hash));
+  TRY(call.backend.store.write([&](store::Writing& tx) -> Result<void> {
+    if (!unstarted.empty()) TRY(release_unstarted(tx, call, account, unstarted));
+    return store::remove_session(tx, hash);
+  }));
   return http::Response{.status = 204, .headers = {}, .body = std::string()};
 }
 
@@ -314,8 +334,13 @@ std::vector<RouteInfo> assigned_work_routes() {
                {"left", integer("1", "Number of trials that the trainee still has to do")},
                {"trial", nullable(ref("AssignedTrial"))}})}};
   RouteInfo out = assigned_work_route("sign-out", "signOutAtStation",
-                                      "Sign the trainee out at the calling station", "TicketShown",
-                                      "", sign_out_at_station);
+                                      "Sign the trainee out at the calling station", "SignOut", "",
+                                      sign_out_at_station);
+  out.schemas = {
+      {"SignOut",
+       object({{"ticket", text("Ticket from signInAtStation")},
+               {"unstarted", optional(text("Slot from nextTrial that the trainee did not begin: it "
+                                           "is released, and another station can have it"))}})}};
   RouteInfo result = assigned_work_route(
       "result", "trialResultAtStation",
       "Read the result of a trial that the signed-in trainee did, as far as the trainee's own "
