@@ -290,6 +290,7 @@ std::vector<RouteInfo> scenarios_routes() {
                      "the tuned scenarios that come with the program",
                      "", "ScenarioVersions", list);
   all.schemas = version_schemas();
+  all.who.push_back(Role::director);  // a curriculum's steps are chosen from them
   RouteInfo file = scenario_route("GET", "/{id}", "scenario", "Read the file of a version", "",
                                   "ScenarioFile", one);
   file.schemas = scenario_file_schemas();

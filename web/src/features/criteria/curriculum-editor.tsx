@@ -27,20 +27,34 @@ import { RequirementsEditor } from './requirements-editor';
 
 const changedAt = ({ versions }: Curriculum): number => versions.at(-1)?.made_utc_us ?? 0;
 
+interface Choices {
+  readonly choices: readonly CaseChoice[] | undefined;
+  readonly failed: Error | null;
+  readonly retry: () => void;
+}
+
 /** All cases and scenarios that a step can have, and those that its steps have already. */
-function useChoices(there: readonly CaseChoice[]): readonly CaseChoice[] | undefined {
-  const cases = useQuery(allCasesQuery).data?.cases;
-  const scenarios = useQuery(scenariosQuery).data;
-  if (!cases || !scenarios) return undefined;
+function useChoices(there: readonly CaseChoice[]): Choices {
+  const cases = useQuery(allCasesQuery),
+    scenarios = useQuery(scenariosQuery);
+  const failed = cases.error ?? scenarios.error;
+  const retry = () => {
+    void cases.refetch();
+    void scenarios.refetch();
+  };
+  if (!cases.data || !scenarios.data) return { choices: undefined, failed, retry };
   const known: readonly CaseChoice[] = [
-    ...cases.filter(({ retired }) => !retired).map(({ id, title }) => ({ key: `case ${id}`, title })),
-    ...scenarios.scenarios
+    ...cases.data.cases.filter(({ retired }) => !retired).map(({ id, title }) => ({ key: `case ${id}`, title })),
+    ...scenarios.data.scenarios
       .filter(({ published }) => published)
       .map(({ id, name }) => ({ key: `case ${id}`, title: name })),
-    ...scenarios.tuned.map(({ kind, name }) => ({ key: `tuned ${kind}`, title: say('{name} (built-in)', { name }) })),
+    ...scenarios.data.tuned.map(({ kind, name }) => ({
+      key: `tuned ${kind}`,
+      title: say('{name} (built-in)', { name }),
+    })),
   ];
   const keys = new Set(known.map(({ key }) => key));
-  return [...known, ...there.filter(({ key }) => !keys.has(key))];
+  return { choices: [...known, ...there.filter(({ key }) => !keys.has(key))], failed, retry };
 }
 
 function Step({
@@ -150,7 +164,7 @@ function Editor({ id, of }: { readonly id: string | undefined; readonly of: Curr
         requirements: step.requirements.map((one) => draftOf(one, unitOf)),
       })) ?? [newStep([])],
   );
-  const choices = useChoices(steps.flatMap(({ cases }) => cases));
+  const { choices, failed, retry } = useChoices(steps.flatMap(({ cases }) => cases));
   const made = useMutation({
     mutationFn: () => addCurriculum(curriculumRequest(id, title, reason, steps, unitOf)),
     onSuccess: (list) => {
@@ -184,7 +198,11 @@ function Editor({ id, of }: { readonly id: string | undefined; readonly of: Curr
           )}
         </div>
       </Card>
-      {choices === undefined ? (
+      {failed ? (
+        <Notice tone="bad" title={say('The cases could not be loaded.')} onRetry={retry}>
+          {failed.message}
+        </Notice>
+      ) : choices === undefined ? (
         <Skeleton height="320px" />
       ) : (
         steps.map((step, place) => (
