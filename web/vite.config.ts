@@ -25,7 +25,7 @@ function fixtureApi(): Plugin {
 
 /** Text that is worth compressing, and from which size on. */
 const kText = /\.(html|js|css|svg|json)$/;
-const kWorth_bytes = 1024;
+const kWorth_bytes = 256;
 
 /** Beside each file of text its copies FILE.br and FILE.gz, which the server sends to browsers that read them. */
 function compressedCopies(): Plugin {
@@ -63,7 +63,21 @@ export default defineConfig({
     assetsInlineLimit: 0,
     chunkSizeWarningLimit: 1200,
     // The server's pages, and the page that a station shows on its own screen.
-    rolldownOptions: { input: ['index.html', 'kiosk.html'] },
+    rolldownOptions: {
+      input: ['index.html', 'kiosk.html'],
+      // What every page needs of libraries is one file: it packs better than many, and stays the same from one version to the next.
+      output: {
+        codeSplitting: {
+          groups: [
+            {
+              name: 'libraries',
+              test: /node_modules\/(react|react-dom|scheduler|@tanstack\/(react-query|query-core)|wouter)\//,
+            },
+          ],
+        },
+      },
+    },
+    modulePreload: { polyfill: false }, // every browser that runs es2022 preloads modules itself
   },
   test: {
     environment: 'jsdom',

@@ -1,6 +1,8 @@
 /** The account of the person who is signed in. */
+import { lazy } from 'react';
 import type { Feature } from '@/ui';
-import { OwnAccountPage } from './own-account-page';
+
+const OwnAccountPage = lazy(() => import('./own-account-page').then(({ OwnAccountPage: page }) => ({ default: page })));
 
 export const feature: Feature = {
   menu: [],

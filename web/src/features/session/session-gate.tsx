@@ -1,11 +1,12 @@
 import { useQuery, useQueryClient } from '@tanstack/react-query';
-import { useEffect, useSyncExternalStore, type ReactNode } from 'react';
+import { lazy, Suspense, useEffect, useSyncExternalStore, type ReactNode } from 'react';
 import { resumeRequests, sessionQuery } from '@/api';
 import { say } from '@/language';
 import { Notice } from '@/ui';
 import { currentPerson, notePerson, subscribePerson } from './ended';
-import { FirstPassword } from './own-account-page';
 import { SignIn } from './sign-in';
+
+const FirstPassword = lazy(() => import('./own-account-page').then(({ FirstPassword: page }) => ({ default: page })));
 
 /**
  * Shows the pages to who is signed in and the sign-in to all others, at the address they came for. When a session ends by
@@ -41,7 +42,13 @@ export function SessionGate({ waiting, children }: { readonly waiting: ReactNode
       {name === null ? <SignIn /> : name === person ? null : waiting}
       {person === null ? null : (
         <div key={person} style={{ display: name === person ? 'contents' : 'none' }}>
-          {session.data?.must_change ? <FirstPassword /> : children}
+          {session.data?.must_change ? (
+            <Suspense fallback={waiting}>
+              <FirstPassword />
+            </Suspense>
+          ) : (
+            children
+          )}
         </div>
       )}
     </>
