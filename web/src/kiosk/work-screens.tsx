@@ -80,6 +80,11 @@ export function WorkScreen({
   );
 }
 
+function heading({ rig, tool }: Pick<Work, 'rig' | 'tool'>): string {
+  if (tool === 'burr') return say('Drill');
+  return rig === 'probing' ? say('Probe the bone') : say('Feel the walls');
+}
+
 export function RunningScreen({
   live,
   work,
@@ -92,7 +97,7 @@ export function RunningScreen({
   return (
     <section className={styles.columns}>
       <div className={styles.words}>
-        <h1>{work?.tool === 'burr' ? say('Drill') : say('Feel the walls')}</h1>
+        <h1>{heading(work ?? { rig: 'palpation', tool: 'probe' })}</h1>
         <dl className={styles.readings}>
           <div>
             <dt>{say('Time')}</dt>

@@ -81,6 +81,7 @@ export function CertificatePage({ account, curriculum }: { readonly account: str
           </Button>
         ) : null}
       </div>
+      {query.isPending || of?.passed ? null : <h1>{say('Certificate')}</h1>}
       {query.isError ? (
         <Notice tone="bad" title={say('The certificate could not be loaded.')} onRetry={() => void query.refetch()}>
           {query.error.message}

@@ -83,7 +83,7 @@ export function CusumChart({ trainee }: { readonly trainee: Trainee }) {
                   <line x1={places.x(back)} x2={places.x(back)} y1={places.y(0)} y2={places.y(rule.relapse)} />
                   <text
                     x={places.x(back) + (back > last / 2 ? -4 : 4)}
-                    y={places.y(rule.relapse / 2)}
+                    y={places.y(rule.relapse) - 18}
                     textAnchor={back > last / 2 ? 'end' : 'start'}
                   >
                     {say('recovered {date}', { date: startOf(attempts, back) })}

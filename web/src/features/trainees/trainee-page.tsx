@@ -122,6 +122,7 @@ export function TraineePage({ name }: { readonly name: string }) {
     return (
       <div className={styles.page}>
         {back}
+        <h1>{name}</h1>
         {missing ? (
           <Notice title={role === 'trainee' ? say('No results yet.') : say('No scored trials for this name.')}>
             {role === 'trainee'
