@@ -1,0 +1,45 @@
+/** Somebody at a kiosk's screen: a scanner types the badge, a finger does the rest. */
+import type { Browser, Page } from 'playwright-core';
+
+const kTrial_ms = 90_000;
+
+export class KioskPerson {
+  private constructor(readonly page: Page) {}
+
+  static async before(browser: Browser, address: string): Promise<KioskPerson> {
+    const page = await browser.newPage({ viewport: { width: 1200, height: 750 } });
+    await page.goto(address);
+    return new KioskPerson(page);
+  }
+
+  screen(name: string): Promise<void> {
+    return this.page.locator(`[data-screen="${name}"]`).waitFor({ timeout: kTrial_ms });
+  }
+  fault(kind: string): Promise<void> {
+    return this.page.locator(`[data-fault="${kind}"]`).waitFor({ timeout: kTrial_ms });
+  }
+  touch(name: string | RegExp): Promise<void> {
+    return this.page.getByRole('button', { name }).click();
+  }
+  async says(text: string | RegExp): Promise<void> {
+    await this.page.getByText(text).first().waitFor({ timeout: kTrial_ms });
+  }
+
+  async scan(badge: string): Promise<void> {
+    await this.page.locator('[data-screen="badge"], [data-fault="interrupted"]').waitFor();
+    await this.page.keyboard.type(`${badge}\n`);
+  }
+  async signIn(badge: string, pin: string): Promise<void> {
+    await this.scan(badge);
+    await this.screen('pin');
+    for (const digit of pin) await this.page.getByRole('button', { name: digit, exact: true }).click();
+    await this.touch('OK');
+    await this.screen('work');
+  }
+  async answer(wall: string, sure: RegExp): Promise<void> {
+    await this.screen('answer');
+    await this.touch(wall);
+    await this.touch(sure);
+    await this.touch('Give the answer');
+  }
+}
