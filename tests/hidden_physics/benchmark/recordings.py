@@ -22,7 +22,8 @@ EMPS_SOURCE = ("EMPS is no part of the repository (A. Janot, M. Gautier, M. Brun
                "EMPS, 2019; https://www.nonlinearbenchmark.org): download it and give the folder that holds "
                "DATA_EMPS.mat with --emps DIR")
 EMPS_N_PER_V, EMPS_MASS_KG, EMPS_VISCOUS = 35.15, 95.1, 203.5  # as published
-EMPS_MIDDLE_M, EMPS_TRIAL_S = 0.05, 2.5
+EMPS_START_M, EMPS_TRIAL_S = 0.05, 2.5  # the carriage starts there, so that all of its way lies in the layer
+LONGEST_TRAVEL_M = 1.0  # a layer lies between 0 and this
 
 
 @dataclass(frozen=True)
@@ -97,14 +98,14 @@ def emps_recording(folder: pathlib.Path, target: pathlib.Path) -> Recording:
     (target / "emps").mkdir(parents=True)
     trials, size = [], round(EMPS_TRIAL_S / float(np.median(np.diff(t))))
     for k, begin in enumerate(range(0, len(t) - size // 2, size)):
-        rows = zip(t[begin:begin + size] - t[begin], EMPS_MIDDLE_M + x[begin:begin + size], force[begin:begin + size])
+        rows = zip(t[begin:begin + size] - t[begin], EMPS_START_M + x[begin:begin + size], force[begin:begin + size])
         lines = "\n".join(f"{a:.6f},{b:.8f},{c:.5f}" for a, b, c in rows)
         (target / "emps" / f"part{k + 1:02d}.csv").write_text(f"t_s,x_m,fz_N\n{lines}\n")
         trials.append({"id": f"part{k + 1:02d}", "file": f"part{k + 1:02d}.csv"})
     index = {"format": "tractus-measurements/1", "rig": "probing", "name": "EMPS", "simulated": False, "trials": trials}
     (target / "emps/set.json").write_text(json.dumps(index))
-    layer = {"start_m": -1.0, "thickness_m": 2.0, "stiffness_N_per_m": 0.0, "damping_Ns_per_m": EMPS_VISCOUS,
-             "equilibrium_m": 0.0}
+    layer = {"start_m": 0.0, "thickness_m": LONGEST_TRAVEL_M, "stiffness_N_per_m": 0.0,
+             "damping_Ns_per_m": EMPS_VISCOUS, "equilibrium_m": 0.0}
     model = {"format": "tractus-model/1", "rig": "probing", "name": "servo axis", "base": {"layers": [layer]},
              "fixed": [f"/base/layers/0/{n}" for n in ("start_m", "thickness_m", "stiffness_N_per_m", "equilibrium_m")],
              "effects": [{"id": "inertia", "parameters": {"mass_kg": EMPS_MASS_KG}}]}

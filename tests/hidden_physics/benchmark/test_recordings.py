@@ -50,9 +50,11 @@ class Recordings(unittest.TestCase):
             made = recordings.emps_recording(pathlib.Path(folder), pathlib.Path(folder) / "out")
             rows = (made.measurements / "part01.csv").read_text().splitlines()
             index = json.loads((made.measurements / "set.json").read_text())
+            layer = json.loads(made.model.read_text())["base"]["layers"][0]
         self.assertEqual(rows[1], "0.000000,0.05000000,70.30000")  # 2 V of 35.15 N/V
         self.assertEqual([trial["id"] for trial in index["trials"]], ["part01", "part02"])
         self.assertEqual(len(rows), 2501)
+        self.assertEqual((layer["start_m"], layer["thickness_m"]), (0.0, 1.0))  # all that a model file may hold
 
     def test_without_the_files_one_line_says_where_they_come_from(self):
         with tempfile.TemporaryDirectory() as folder, self.assertRaises(SystemExit) as said:
