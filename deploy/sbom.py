@@ -30,7 +30,7 @@ def debian_package(name):
     base = name.split(":")[0]
     text = Path(f"/usr/share/doc/{base}/copyright").read_text(errors="replace")
     licences = sorted(set(re.findall(r"^License:\s*(\S.*)$", text, re.M)))
-    return {"name": base, "version": version, "licences": licences,
+    return {"name": base, "version": version, "licences": licences, "texts": [text.strip()] if name in HEADERS else [],
             "address": f"pkg:deb/debian/{base}@{version}?arch={architecture}"}
 
 
@@ -56,8 +56,9 @@ def npm_packages(web):
         if not place or one.get("dev") or one.get("optional"):
             continue
         name = place.split("node_modules/")[-1]
-        texts = [path.read_text(errors="replace").strip() for path in sorted((web / place).glob("LICEN[CS]E*"))]
-        yield {"name": name, "version": one["version"], "licences": [one.get("license", "")], "texts": texts,
+        files = sorted((web / place).glob("[Ll][Ii][Cc][Ee][Nn][CSces]*")) or [web / place / "README.md"]  # some state it in their README
+        texts = [path.read_text(errors="replace").strip() for path in files]
+        yield {"name": name, "version": one["version"], "licences": [one.get("license", "")], "declared": one.get("license"), "texts": texts,
                "address": f"pkg:npm/{name.replace('@', '%40')}@{one['version']}"}
 
 
@@ -67,11 +68,11 @@ def spdx(name, version, parts):
     def entry(number, part):
         return {"SPDXID": f"SPDXRef-{number}", "name": part["name"], "versionInfo": part["version"],
                 "downloadLocation": "NOASSERTION", "filesAnalyzed": False, "licenseConcluded": "NOASSERTION",
-                "licenseDeclared": "NOASSERTION", "licenseComments": "; ".join(filter(None, part["licences"])),
+                "licenseDeclared": part.get("declared") or "NOASSERTION", "licenseComments": "; ".join(filter(None, part["licences"])),
                 "copyrightText": "NOASSERTION",
                 "externalRefs": [{"referenceCategory": "PACKAGE-MANAGER", "referenceType": "purl", "referenceLocator": part["address"]}]}
 
-    own = {"name": name, "version": version, "licences": ["Apache-2.0"], "address": f"pkg:deb/{name}@{version}"}
+    own = {"name": name, "version": version, "licences": [], "declared": "Apache-2.0", "address": f"pkg:deb/{name}@{version}"}
     packages = [entry(number, part) for number, part in enumerate([own, *parts])]
     names = hashlib.sha256(json.dumps(packages, sort_keys=True).encode()).hexdigest()
     return {"spdxVersion": "SPDX-2.3", "dataLicense": "CC0-1.0", "SPDXID": "SPDXRef-DOCUMENT", "name": f"{name}-{version}",
@@ -84,8 +85,12 @@ def spdx(name, version, parts):
 
 def copyright_text(parts):
     out = [(ROOT / "NOTICE").read_text().strip(), "The Apache License, Version 2.0: /usr/share/common-licenses/Apache-2.0"]
+    beside = [part["name"] for part in parts if not part["texts"]]
+    if beside:
+        out.append("Loaded as shared libraries, with their licences in the packages of their own (/usr/share/doc/NAME/copyright):\n\n"
+                   + "\n".join(beside))
     for part in parts:
-        for text in part.get("texts", []):
+        for text in part["texts"]:
             out.append(f"{part['name']} {part['version']}\n\n{text}")
     return ("\n\n" + "-" * 80 + "\n\n").join(out) + "\n"
 

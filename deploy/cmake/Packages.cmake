@@ -15,7 +15,7 @@ endfunction()
 
 function(tractus_document component)
   set(folder ${CMAKE_INSTALL_DATADIR}/doc/tractus-${component})
-  install(FILES ${TRACTUS_MADE}/${component}/copyright ${TRACTUS_MADE}/${component}/sbom.spdx.json
+  install(FILES ${TRACTUS_MADE}/${component}/copyright ${TRACTUS_MADE}/${component}/sbom.spdx.json ${TRACTUS_MADE}/changelog.gz
     DESTINATION ${folder} OPTIONAL COMPONENT ${component})
 endfunction()
 
@@ -62,12 +62,19 @@ endforeach()
 set(CPACK_DEBIAN_WEB_PACKAGE_ARCHITECTURE all)
 set(CPACK_DEBIAN_WEB_PACKAGE_SHLIBDEPS OFF)
 set(CPACK_DEBIAN_SERVER_PACKAGE_DEPENDS "systemd, debconf, tractus-web (= ${PROJECT_VERSION})")
-set(CPACK_DEBIAN_STATION_PACKAGE_DEPENDS "systemd, tractus-web (= ${PROJECT_VERSION})")
-set(CPACK_DEBIAN_STATION_PACKAGE_RECOMMENDS "cage, chromium")
-foreach(component server station)
-  file(GLOB scripts ${debian}/${component}/postinst ${debian}/${component}/prerm ${debian}/${component}/postrm ${debian}/${component}/templates
-    ${debian}/${component}/conffiles)
-  string(TOUPPER ${component} upper)
-  set(CPACK_DEBIAN_${upper}_PACKAGE_CONTROL_EXTRA ${scripts})
-endforeach()
+set(CPACK_DEBIAN_STATION_PACKAGE_DEPENDS "systemd, debconf, tractus-web (= ${PROJECT_VERSION})")
+set(CPACK_DEBIAN_STATION_PACKAGE_SUGGESTS "cage, chromium")
+
+# tractus_debian(component FOLDER LINKS DATA)  the scripts of a package with data: its folder, links of units that are switched on, what a
+# purge deletes when it is told to
+function(tractus_debian component folder links data)
+  set(scripts ${CMAKE_BINARY_DIR}/debian/${component})
+  configure_file(${debian}/postrm ${scripts}/postrm @ONLY)
+  string(TOUPPER CPACK_DEBIAN_${component}_PACKAGE_CONTROL_EXTRA extra)
+  set(${extra} ${debian}/${component}/postinst ${debian}/${component}/prerm ${debian}/${component}/templates ${debian}/${component}/conffiles
+    ${scripts}/postrm PARENT_SCOPE)
+endfunction()
+tractus_debian(server /var/lib/tractus
+  "/etc/systemd/system/*.wants/tractus-server.service /etc/systemd/system/*.wants/tractus-backup.timer" "/var/lib/tractus /etc/tractus/admin-password")
+tractus_debian(station /var/lib/tractus-station "/etc/systemd/system/*.wants/tractus-kiosk.service" /var/lib/tractus-station)
 include(CPack)
