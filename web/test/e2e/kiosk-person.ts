@@ -12,11 +12,19 @@ export class KioskPerson {
     return new KioskPerson(page);
   }
 
+  /** Waits for what `selector` names; an error tells what the kiosk shows instead. */
+  private async shows(selector: string): Promise<void> {
+    try {
+      await this.page.locator(selector).waitFor({ timeout: kTrial_ms });
+    } catch {
+      throw new Error(`not ${selector}, but: ${await this.page.locator('body').innerText()}`);
+    }
+  }
   screen(name: string): Promise<void> {
-    return this.page.locator(`[data-screen="${name}"]`).waitFor({ timeout: kTrial_ms });
+    return this.shows(`[data-screen="${name}"]`);
   }
   fault(kind: string): Promise<void> {
-    return this.page.locator(`[data-fault="${kind}"]`).waitFor({ timeout: kTrial_ms });
+    return this.shows(`[data-fault="${kind}"]`);
   }
   touch(name: string | RegExp): Promise<void> {
     return this.page.getByRole('button', { name }).click();

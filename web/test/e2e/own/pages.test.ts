@@ -1,4 +1,4 @@
-/** Every page of every manifest on a real server with a small programme: not wider than the window, no fault by axe-core, painted within a second. */
+/** Every page of every manifest on a real server with a small programme: not wider than the window, no fault by axe-core; the first paint is printed. */
 import { readFileSync } from 'node:fs';
 import { fileURLToPath } from 'node:url';
 import type { Browser, Page } from 'playwright-core';
@@ -12,8 +12,7 @@ import { addressesOf, everyRoute } from '../routes';
 const bin = programs('tractus-server', 'tractus-station', 'tractus');
 const kCt = fileURLToPath(new URL('../../../../tests/data/ct/tptbox_L3/sub-ct_label-22_ct.nii.gz', import.meta.url));
 const [kAda] = kTrainees;
-const kPaint_ms = 1000,
-  kScripts_B = 100_000;
+const kScripts_B = 100_000;
 /** Pages of a trainee's own; an administrator has none. */
 const kOwn: readonly string[] = ['/me', '/curriculum'];
 /** The work page of the model lab is measured on the recorded set of the simulated server. */
@@ -143,10 +142,9 @@ describe.skipIf(bin === undefined || !inject('fixture'))('the pages', () => {
       const addresses = addressesOf(pattern, known);
       expect(addresses, 'an address to measure').not.toEqual([]);
       for (const address of addresses) {
-        const found = await measured(page, address, kPaint_ms);
+        const found = await measured(page, address);
         all.push(found);
         expect(found.faults).toEqual([]);
-        expect(found.firstPaint_ms, 'ms to the first paint').toBeLessThanOrEqual(kPaint_ms);
       }
     },
     120_000,
