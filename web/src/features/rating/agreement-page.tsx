@@ -1,19 +1,26 @@
 import { useQuery } from '@tanstack/react-query';
 import { useState } from 'react';
 import { agreementQuery, rubricsQuery, type Agreement, type RaterGroup } from '@/api';
+import { marked, say } from '@/language';
 import { Badge, Card, Notice, Select, Skeleton, Table } from '@/ui';
 import { formatCount, formatFigure, kNone } from '@/units';
 import { DifferenceChart } from './difference-chart';
 import { Frame } from './frame';
 import styles from './rating.module.css';
 
-const listed = (raters: readonly string[]) => raters.join(' and ');
+const listed = (raters: readonly string[]) => raters.join(` ${say('and')} `);
 
 /** "0.62 (0.07 to 0.93)". */
 function within(value: number | null, low: number | null, high: number | null): string {
   if (value === null) return kNone;
-  const ends = low === null || high === null ? '' : ` (${formatFigure(low, '', 2)} to ${formatFigure(high, '', 2)})`;
-  return formatFigure(value, '', 2) + ends;
+  const shown = formatFigure(value, '', 2);
+  return low === null || high === null
+    ? shown
+    : say('{value} ({low} to {high})', {
+        value: shown,
+        low: formatFigure(low, '', 2),
+        high: formatFigure(high, '', 2),
+      });
 }
 
 interface Row extends Agreement {
@@ -21,33 +28,38 @@ interface Row extends Agreement {
 }
 
 function Group({ of }: { readonly of: RaterGroup }) {
-  const rows: Row[] = [{ ...of.total, label: 'Sum of all items' }, ...of.items];
+  const rows: Row[] = [{ ...of.total, label: say('Sum of all items') }, ...of.items];
   const [first = '', second = ''] = of.raters;
   return (
     <Card
       title={listed(of.raters)}
-      aside={of.simulated ? <Badge tone="warn">simulated trials among them</Badge> : undefined}
+      aside={of.simulated ? <Badge tone="warn">{say('simulated trials among them')}</Badge> : undefined}
     >
       <div className={styles.stack}>
-        <p>{formatCount(of.trials)} trials rated by each, without seeing another’s rating.</p>
+        <p>
+          {say('{trials} trials rated by each, without seeing another’s rating.', { trials: formatCount(of.trials) })}
+        </p>
         <Table<Row>
-          caption={`Agreement of ${listed(of.raters)}`}
+          caption={say('Agreement of {raters}', { raters: listed(of.raters) })}
           minWidth={640}
           rows={rows}
           keyOf={({ label }, i) => `${i} ${label}`}
           empty=""
           columns={[
-            { name: 'Item', cell: ({ label }) => label },
+            { name: marked('Item'), cell: ({ label }) => label },
             {
-              name: 'ICC(2,1), one rater',
+              name: marked('ICC(2,1), one rater'),
               cell: (one) => within(one.single, one.single_low, one.single_high),
             },
             {
-              name: `ICC(2,${formatCount(of.raters.length)}), mean of raters`,
+              name: say('ICC(2,{count}), mean of raters', { count: formatCount(of.raters.length) }),
               cell: (one) => within(one.mean, one.mean_low, one.mean_high),
             },
-            { name: 'Weighted kappa', cell: ({ kappa }) => (kappa === null ? kNone : formatFigure(kappa, '', 2)) },
-            { name: 'Remark', cell: ({ note }) => note },
+            {
+              name: marked('Weighted kappa'),
+              cell: ({ kappa }) => (kappa === null ? kNone : formatFigure(kappa, '', 2)),
+            },
+            { name: marked('Remark'), cell: ({ note }) => note },
           ]}
         />
         {of.differences ? (
@@ -69,12 +81,14 @@ export function AgreementPage() {
   return (
     <Frame
       at="/ratings/agreement"
-      lead="Agreement of people who rated the same trials: two-way random intraclass correlations for absolute agreement (Shrout and Fleiss 1979) with 95 % intervals, and Cohen’s kappa weighted by the squares of the differences. Includes the trials that you may see and that all their raters have rated."
+      lead={say(
+        'Agreement of people who rated the same trials: two-way random intraclass correlations for absolute agreement (Shrout and Fleiss 1979) with 95 % intervals, and Cohen’s kappa weighted by the squares of the differences. Includes the trials that you may see and that all their raters have rated.',
+      )}
     >
       {failed ? (
         <Notice
           tone="bad"
-          title="The agreement could not be loaded."
+          title={say('The agreement could not be loaded.')}
           onRetry={() => void (rubrics.isError ? rubrics : query).refetch()}
         >
           {failed.message}
@@ -83,19 +97,19 @@ export function AgreementPage() {
       {all.length > 0 ? (
         <div className={styles.choose}>
           <Select
-            label="Rubric"
+            label={say('Rubric')}
             value={of ? `${of.id} ${of.version}` : ''}
             onChange={(event) => setChosen(event.target.value)}
             options={all.map(({ id, version, title }) => ({
               value: `${id} ${version}`,
-              text: `${title}, version ${formatCount(version)}`,
+              text: say('{title}, version {version}', { title, version: formatCount(version) }),
             }))}
           />
         </div>
       ) : null}
-      {rubrics.data && all.length === 0 ? <p>No rubrics yet.</p> : null}
+      {rubrics.data && all.length === 0 ? <p>{say('No rubrics yet.')}</p> : null}
       {query.data?.groups.length === 0 ? (
-        <p>No trial has been rated by two or more people with this rubric yet.</p>
+        <p>{say('No trial has been rated by two or more people with this rubric yet.')}</p>
       ) : (
         query.data?.groups.map((group) => <Group key={group.raters.join(' ')} of={group} />)
       )}

@@ -1,5 +1,6 @@
 import type { RaterGroup } from '@/api';
 import { Plane } from '@/charts';
+import { say } from '@/language';
 import { formatCount, formatFigure } from '@/units';
 import styles from './rating.module.css';
 
@@ -22,16 +23,26 @@ export function DifferenceChart({
   const across = { from: Math.min(...means) - margin(means), to: Math.max(...means) + margin(means) };
   const up = { from: Math.min(...spans) - margin(spans), to: Math.max(...spans) + margin(spans) };
   const lines = [
-    { at: differences.high, text: 'mean + 1.96 SD', limit: true },
-    { at: differences.mean, text: 'mean', limit: false },
-    { at: differences.low, text: 'mean − 1.96 SD', limit: true },
+    { at: differences.high, text: say('mean + 1.96 SD'), limit: true },
+    { at: differences.mean, text: say('mean'), limit: false },
+    { at: differences.low, text: say('mean − 1.96 SD'), limit: true },
   ];
   return (
     <Plane
-      across={{ title: 'mean of both sums, points', ...across }}
-      up={{ title: `${first} less ${second}, points`, ...up }}
+      across={{ title: say('mean of both sums, points'), ...across }}
+      up={{ title: say('{first} less {second}, points', { first, second }), ...up }}
       height_px={280}
-      summary={`${formatCount(dots.length)} trials: the sums of ${first} are ${formatFigure(differences.mean)} points above those of ${second} on average; 95 % of the differences lie between ${formatFigure(differences.low)} and ${formatFigure(differences.high)}.`}
+      summary={say(
+        '{trials} trials: the sums of {first} are {mean} points above those of {second} on average; 95 % of the differences lie between {low} and {high}.',
+        {
+          trials: formatCount(dots.length),
+          first,
+          mean: formatFigure(differences.mean),
+          second,
+          low: formatFigure(differences.low),
+          high: formatFigure(differences.high),
+        },
+      )}
       data={{
         name: `agreement of ${first} and ${second}`,
         columns: [`sum_${first}`, `sum_${second}`],

@@ -1,10 +1,10 @@
 import { expect, it } from 'vitest';
-import { idFrom, itemOf, itemProblem, kGlobalRating, newItem } from './draft';
+import { globalRating, idFrom, itemOf, itemProblem, newItem } from './draft';
 
 const full = { ...newItem(), label: 'Flow', low_text: 'stops', high_text: 'moves on' };
 
 it('begins with seven items of 1 to 5 that are described at both ends and in the middle', () => {
-  const items = kGlobalRating.map((one) => newItem(one));
+  const items = globalRating().map((one) => newItem(one));
   expect(items).toHaveLength(7);
   for (const one of items) {
     expect(itemProblem(one)).toBe('');

@@ -1,5 +1,7 @@
 /** A rubric as it is being written. Pure. */
 import type { RubricItem } from '@/api';
+import { marked, say } from '@/language';
+import { formatCount } from '@/units';
 
 /** What is typed stays text until it is sent. */
 export interface ItemDraft {
@@ -33,12 +35,13 @@ const whole = (text: string) => (/^\d+$/.test(text.trim()) ? Number(text) : NaN)
 
 /** What is wrong with the item; empty if nothing is. */
 export function itemProblem(of: ItemDraft): string {
-  if (of.label.trim() === '') return 'Name the item.';
+  if (of.label.trim() === '') return say('Name the item.');
   const low = whole(of.low),
     high = whole(of.high);
-  if (!(low >= 0 && high <= kLargestPoint)) return `Points from 0 to ${kLargestPoint} are expected.`;
-  if (!(high > low)) return 'The high end must have more points than the low end.';
-  if (of.low_text.trim() === '' || of.high_text.trim() === '') return 'Describe both ends.';
+  if (!(low >= 0 && high <= kLargestPoint))
+    return say('Points from 0 to {most} are expected.', { most: formatCount(kLargestPoint) });
+  if (!(high > low)) return say('The high end must have more points than the low end.');
+  if (of.low_text.trim() === '' || of.high_text.trim() === '') return say('Describe both ends.');
   return '';
 }
 
@@ -67,43 +70,54 @@ const item = (label: string, low_text: string, middle_text: string, high_text: s
   high_text,
 });
 
-/** The seven items of OSATS' global rating scale [Martin1997], described in our own words. */
-export const kGlobalRating: readonly Partial<RubricItem>[] = [
+/** The seven items of OSATS' global rating scale [Martin1997], described in our own words; in English. */
+const kGlobalRating: readonly Partial<RubricItem>[] = [
   item(
-    'Respect for tissue',
-    'Often uses more force than needed, or harms tissue by careless handling',
-    'Handles tissue carefully, with a slip now and then',
-    'Handles tissue carefully throughout and harms it as little as can be',
-  ),
-  item('Time and motion', 'Makes many needless moves', 'Efficient, with some needless moves', 'No needless move'),
-  item(
-    'Handling of instruments',
-    'Moves are hesitant or awkward',
-    'Competent, at times stiff or awkward',
-    'Moves are fluent, never awkward',
+    marked('Respect for tissue'),
+    marked('Often uses more force than needed, or harms tissue by careless handling'),
+    marked('Handles tissue carefully, with a slip now and then'),
+    marked('Handles tissue carefully throughout and harms it as little as can be'),
   ),
   item(
-    'Knowledge of instruments',
-    'Often asks for or takes the wrong instrument',
-    'Knows most instruments and takes the right one',
-    'Knows the instruments and their names without doubt',
+    marked('Time and motion'),
+    marked('Makes many needless moves'),
+    marked('Efficient, with some needless moves'),
+    marked('No needless move'),
   ),
   item(
-    'Use of assistance',
-    'Hardly uses assistants, or badly',
-    'Uses assistants well most of the time',
-    'Uses assistants to the best all the time',
+    marked('Handling of instruments'),
+    marked('Moves are hesitant or awkward'),
+    marked('Competent, at times stiff or awkward'),
+    marked('Moves are fluent, never awkward'),
   ),
   item(
-    'Flow and planning',
-    'Often stops, or does not know the next step',
-    'Plans ahead, the steps follow each other steadily',
-    'The course is planned; one step leads to the next without effort',
+    marked('Knowledge of instruments'),
+    marked('Often asks for or takes the wrong instrument'),
+    marked('Knows most instruments and takes the right one'),
+    marked('Knows the instruments and their names without doubt'),
   ),
   item(
-    'Knowledge of this procedure',
-    'Does not know enough; needs instruction at most steps',
-    'Knows all that matters of the operation',
-    'Is at home with every aspect of the operation',
+    marked('Use of assistance'),
+    marked('Hardly uses assistants, or badly'),
+    marked('Uses assistants well most of the time'),
+    marked('Uses assistants to the best all the time'),
+  ),
+  item(
+    marked('Flow and planning'),
+    marked('Often stops, or does not know the next step'),
+    marked('Plans ahead, the steps follow each other steadily'),
+    marked('The course is planned; one step leads to the next without effort'),
+  ),
+  item(
+    marked('Knowledge of this procedure'),
+    marked('Does not know enough; needs instruction at most steps'),
+    marked('Knows all that matters of the operation'),
+    marked('Is at home with every aspect of the operation'),
   ),
 ];
+
+/** The global rating scale in the reader's language. */
+export const globalRating = (): readonly Partial<RubricItem>[] =>
+  kGlobalRating.map(({ label = '', low_text = '', middle_text = '', high_text = '' }) =>
+    item(say(label), say(low_text), say(middle_text), say(high_text)),
+  );

@@ -1,10 +1,11 @@
 import type { ReactNode } from 'react';
+import { marked, say } from '@/language';
 import { TabbedPage } from '@/ui';
 
 const kTabs = [
-  { to: '/ratings', name: 'Ratings', tab: 'To rate' },
-  { to: '/ratings/rubrics', name: 'Rubrics' },
-  { to: '/ratings/agreement', name: 'Agreement of raters', tab: 'Agreement' },
+  { to: '/ratings', name: marked('Ratings'), tab: marked('To rate') },
+  { to: '/ratings/rubrics', name: marked('Rubrics') },
+  { to: '/ratings/agreement', name: marked('Agreement of raters'), tab: marked('Agreement') },
 ] as const;
 
 /** What the pages of ratings have in common. */
@@ -17,7 +18,7 @@ export const Frame = ({
   readonly lead: string;
   readonly children: ReactNode;
 }) => (
-  <TabbedPage tabs={kTabs} at={at} label="Ratings" lead={lead}>
+  <TabbedPage tabs={kTabs} at={at} label={say('Ratings')} lead={lead}>
     {children}
   </TabbedPage>
 );

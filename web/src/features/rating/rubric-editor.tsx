@@ -2,9 +2,10 @@ import { useMutation, useQuery, useQueryClient } from '@tanstack/react-query';
 import { useState } from 'react';
 import { Link, useLocation } from 'wouter';
 import { addRubric, rubricsQuery, sessionQuery, type Rubric } from '@/api';
+import { say } from '@/language';
 import { Button, Card, Field, Notice, Skeleton } from '@/ui';
 import { formatCount, formatDateTime } from '@/units';
-import { idFrom, itemOf, itemProblem, kGlobalRating, newItem, type ItemDraft } from './draft';
+import { globalRating, idFrom, itemOf, itemProblem, newItem, type ItemDraft } from './draft';
 import { Frame } from './frame';
 import styles from './rating.module.css';
 
@@ -30,24 +31,24 @@ function ItemFields({
   );
   return (
     <fieldset className={styles.item}>
-      <legend>Item {formatCount(place)}</legend>
+      <legend>{say('Item {number}', { number: formatCount(place) })}</legend>
       <div className={styles.names}>
-        {field('label', 'Name', 100)}
-        {field('text', 'What is looked at (optional)')}
-        {field('low', 'Low end, points', 2)}
-        {field('high', 'High end, points', 2)}
+        {field('label', say('Name'), 100)}
+        {field('text', say('What is looked at (optional)'))}
+        {field('low', say('Low end, points'), 2)}
+        {field('high', say('High end, points'), 2)}
       </div>
       <div className={styles.anchors}>
-        {field('low_text', 'Low end')}
-        {field('middle_text', 'Middle (optional)')}
-        {field('high_text', 'High end')}
+        {field('low_text', say('Low end'))}
+        {field('middle_text', say('Middle (optional)'))}
+        {field('high_text', say('High end'))}
       </div>
       <div className={styles.under}>
         <span role="status" className={styles.muted}>
           {itemProblem(draft)}
         </span>
-        <Button look="quiet" label={`Remove item ${formatCount(place)}`} onClick={onRemove}>
-          Remove
+        <Button look="quiet" label={say('Remove item {number}', { number: formatCount(place) })} onClick={onRemove}>
+          {say('Remove')}
         </Button>
       </div>
     </fieldset>
@@ -73,24 +74,29 @@ function Editing({ of }: { readonly of: Rubric | undefined }) {
   const taken = !of && known.some((one) => one.id === id);
   const wrong =
     id === ''
-      ? 'Give the rubric a title.'
+      ? say('Give the rubric a title.')
       : taken
-        ? 'A rubric has this title already.'
+        ? say('A rubric has this title already.')
         : items.length === 0
-          ? 'Add an item.'
+          ? say('Add an item.')
           : items.some((one) => itemProblem(one) !== '')
-            ? 'Complete every item.'
+            ? say('Complete every item.')
             : '';
   const change = (key: number, to: Partial<ItemDraft>) =>
     setItems(items.map((one) => (one.key === key ? { ...one, ...to } : one)));
   return (
-    <Card title={of ? `New version of ${of.title}` : 'New rubric'}>
+    <Card title={of ? say('New version of {title}', { title: of.title }) : say('New rubric')}>
       <div className={styles.stack}>
         <div className={styles.names}>
-          <Field label="Title" value={title} maxLength={100} onChange={(event) => setTitle(event.target.value)} />
+          <Field
+            label={say('Title')}
+            value={title}
+            maxLength={100}
+            onChange={(event) => setTitle(event.target.value)}
+          />
           {of ? (
             <Field
-              label="Reason of the change (optional)"
+              label={say('Reason of the change (optional)')}
               value={reason}
               maxLength={400}
               onChange={(event) => setReason(event.target.value)}
@@ -107,22 +113,22 @@ function Editing({ of }: { readonly of: Rubric | undefined }) {
           />
         ))}
         <div className={styles.buttons}>
-          <Button onClick={() => setItems([...items, newItem()])}>Add an item</Button>
+          <Button onClick={() => setItems([...items, newItem()])}>{say('Add an item')}</Button>
           {items.length === 0 ? (
-            <Button onClick={() => setItems(kGlobalRating.map((one) => newItem(one)))}>
-              Begin with the global rating scale of OSATS
+            <Button onClick={() => setItems(globalRating().map((one) => newItem(one)))}>
+              {say('Begin with the global rating scale of OSATS')}
             </Button>
           ) : null}
         </div>
         {made.isError ? (
-          <Notice tone="bad" title="The rubric was not stored.">
+          <Notice tone="bad" title={say('The rubric was not stored.')}>
             {made.error.message}
           </Notice>
         ) : null}
         <div className={styles.go}>
           <span>{wrong}</span>
           <Button look="solid" disabled={wrong !== '' || made.isPending} onClick={() => made.mutate()}>
-            {of ? 'Store as a new version' : 'Store the rubric'}
+            {of ? say('Store as a new version') : say('Store the rubric')}
           </Button>
         </div>
       </div>
@@ -132,20 +138,30 @@ function Editing({ of }: { readonly of: Rubric | undefined }) {
 
 function Versions({ of }: { readonly of: readonly Rubric[] }) {
   return (
-    <Card title="Versions">
+    <Card title={say('Versions')}>
       <ul className={styles.versions}>
         {of.toReversed().map(({ version, made_utc_us, made_by, reason, items }) => (
           <li key={version}>
             <details>
               <summary>
-                Version {formatCount(version)}, {formatDateTime(made_utc_us)} by {made_by}
+                {say('Version {version}, {date} by {name}', {
+                  version: formatCount(version),
+                  date: formatDateTime(made_utc_us),
+                  name: made_by,
+                })}
                 {reason === '' ? '' : `: ${reason}`}
               </summary>
               <ol>
                 {items.map(({ label, low, high, low_text, middle_text, high_text }) => (
                   <li key={label}>
-                    <strong>{label}</strong>, {formatCount(low)} ({low_text}) to {formatCount(high)} ({high_text})
-                    {middle_text === '' ? '' : `, middle: ${middle_text}`}
+                    <strong>{label}</strong>:{' '}
+                    {say('{low} ({low_text}) to {high} ({high_text})', {
+                      low: formatCount(low),
+                      low_text,
+                      high: formatCount(high),
+                      high_text,
+                    })}
+                    {middle_text === '' ? '' : say(', middle: {text}', { text: middle_text })}
                   </li>
                 ))}
               </ol>
@@ -167,19 +183,21 @@ export function RubricEditor({ id }: { readonly id?: string }) {
   return (
     <Frame
       at="/ratings/rubrics"
-      lead="Items with whole points; say in words what the lowest, the middle and the highest mean. Stored versions never change."
+      lead={say(
+        'Items with whole points; say in words what the lowest, the middle and the highest mean. Stored versions never change.',
+      )}
     >
       <p>
-        <Link href="/ratings/rubrics">← Rubrics</Link>
+        <Link href="/ratings/rubrics">← {say('Rubrics')}</Link>
       </p>
       {query.isError ? (
-        <Notice tone="bad" title="The rubric could not be loaded." onRetry={() => void query.refetch()}>
+        <Notice tone="bad" title={say('The rubric could not be loaded.')} onRetry={() => void query.refetch()}>
           {query.error.message}
         </Notice>
       ) : ready ? null : (
         <Skeleton height="480px" />
       )}
-      {query.data && id !== undefined && !of ? <Notice tone="warn" title="There is no such rubric." /> : null}
+      {query.data && id !== undefined && !of ? <Notice tone="warn" title={say('There is no such rubric.')} /> : null}
       {versions.length > 0 ? <Versions of={versions} /> : null}
       {may && ready && (id === undefined || of) ? <Editing of={of} /> : null}
     </Frame>

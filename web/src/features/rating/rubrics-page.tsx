@@ -2,6 +2,7 @@ import { useQuery } from '@tanstack/react-query';
 import { useMemo } from 'react';
 import { Link } from 'wouter';
 import { rubricsQuery, sessionQuery, type Rubric } from '@/api';
+import { marked, say } from '@/language';
 import { Card, DataTable, Notice } from '@/ui';
 import { formatCount, formatDate } from '@/units';
 import { Frame } from './frame';
@@ -18,52 +19,57 @@ export function RubricsPage() {
   return (
     <Frame
       at="/ratings/rubrics"
-      lead="Forms for rating trials: items with points, described at both ends. A change makes a new version; earlier ratings keep theirs."
+      lead={say(
+        'Forms for rating trials: items with points, described at both ends. A change makes a new version; earlier ratings keep theirs.',
+      )}
     >
       {query.isError ? (
-        <Notice tone="bad" title="The rubrics could not be loaded." onRetry={() => void query.refetch()}>
+        <Notice tone="bad" title={say('The rubrics could not be loaded.')} onRetry={() => void query.refetch()}>
           {query.error.message}
         </Notice>
       ) : null}
       <Card
-        title="Rubrics"
+        title={say('Rubrics')}
         aside={
           may ? (
             <Link href="/ratings/rubrics/new" className={styles.solid}>
-              New rubric
+              {say('New rubric')}
             </Link>
           ) : undefined
         }
       >
         <DataTable<Rubric>
           address=""
-          caption="Rubrics"
+          caption={say('Rubrics')}
           rows={rows}
           keyOf={({ id }) => id}
-          empty={may ? 'No rubrics yet. Make a new rubric.' : 'No rubrics yet. A programme director makes them.'}
-          filter={{ label: 'Filter by title', text: ({ title }) => title }}
+          empty={
+            may ? say('No rubrics yet. Make a new rubric.') : say('No rubrics yet. A programme director makes them.')
+          }
+          filter={{ label: say('Filter by title'), text: ({ title }) => title }}
           columns={[
             {
-              name: 'Rubric',
+              name: marked('Rubric'),
               by: ({ title }) => title,
               cell: ({ id, title }) => <Link href={`/ratings/rubrics/${id}`}>{title}</Link>,
             },
             {
-              name: 'Items',
+              name: marked('Items'),
               by: ({ items }) => items.length,
               cell: ({ items }) => formatCount(items.length),
               number: true,
             },
             {
-              name: 'Version',
+              name: marked('Version'),
               by: ({ version }) => version,
               cell: ({ version }) => formatCount(version),
               number: true,
             },
             {
-              name: 'Changed',
+              name: marked('Changed'),
               by: ({ made_utc_us }) => made_utc_us,
-              cell: ({ made_utc_us, made_by }) => `${formatDate(made_utc_us)} by ${made_by}`,
+              cell: ({ made_utc_us, made_by }) =>
+                say('{date} by {name}', { date: formatDate(made_utc_us), name: made_by }),
             },
           ]}
         />
