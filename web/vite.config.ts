@@ -83,6 +83,7 @@ export default defineConfig({
     environment: 'jsdom',
     include: ['src/**/*.test.{ts,tsx}', 'test/fixture/*.test.ts', 'test/language/*.test.ts'],
     exclude: [...configDefaults.exclude, 'test/e2e/**'],
+    testTimeout: 20_000, // other work on the machine slows a test down
     restoreMocks: true,
   },
 });

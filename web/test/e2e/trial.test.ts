@@ -257,7 +257,7 @@ it.runIf(inject('fixture'))('what went wrong in a recording is told', async () =
   const { page } = seen;
   await page.goto('/trials/trial-004');
   await page.getByText('incomplete recording').waitFor();
-  await page.getByText(/ticks were skipped/).waitFor();
+  await page.getByText(/Ticks were skipped/).waitFor();
   await page.goto('/trials/trial-003');
   await page.getByText('The assessment of this trial failed.').waitFor();
   await page.getByText('This trial has no measures.').waitFor();

@@ -4,6 +4,7 @@
  */
 import type { ForceDepth } from '@/api';
 import type { Mark } from '@/charts';
+import { say } from '@/language';
 
 export function breachMarks(curve: ForceDepth | undefined): Mark[] {
   if (!curve) return [];
@@ -12,7 +13,7 @@ export function breachMarks(curve: ForceDepth | undefined): Mark[] {
   curve.mode.forEach((mode, i) => {
     const depth_m = curve.depth_m[i] ?? 0;
     if (mode === 'breach' && curve.mode[i - 1] !== 'breach' && depth_m >= deepest_m)
-      marks.push({ t_s: curve.t_s[i] ?? 0, label: 'breach' });
+      marks.push({ t_s: curve.t_s[i] ?? 0, label: say('breach') });
     deepest_m = Math.max(deepest_m, depth_m);
   });
   return marks;

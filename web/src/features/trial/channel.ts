@@ -1,5 +1,6 @@
 /** Sentences about the channel that a burr drilled, from the measures of the trial. */
 import type { Metric } from '@/api';
+import { say } from '@/language';
 import { formatMeasure, kNone } from '@/units';
 
 export interface Channel {
@@ -29,11 +30,22 @@ export function channelOf(metrics: readonly Metric[]): Channel | null {
   if (!beyond || beyond.value === null)
     return {
       outcome: 'unknown',
-      headline: beyond ? `Not assessed: ${beyond.note}` : 'The channel was not measured',
+      headline: beyond ? say('Not assessed: {why}', { why: say(beyond.note) }) : say('The channel was not measured'),
       ...rest,
     };
   const by = formatMeasure(Math.abs(beyond.value), beyond.unit);
   return beyond.value > 0
-    ? { outcome: 'out', headline: `Left the bone, ${beyond.note}, by ${by}`, ...rest }
-    : { outcome: 'within', headline: `Within the bone: ${by} of bone remains, ${beyond.note}`, ...rest };
+    ? {
+        outcome: 'out',
+        headline: say('Left the bone, {where}, by {distance}', { where: say(beyond.note), distance: by }),
+        ...rest,
+      }
+    : {
+        outcome: 'within',
+        headline: say('Within the bone: {distance} of bone remains, {where}', {
+          distance: by,
+          where: say(beyond.note),
+        }),
+        ...rest,
+      };
 }

@@ -2,6 +2,7 @@ import { useQuery } from '@tanstack/react-query';
 import { useMemo } from 'react';
 import { forceDepthQuery, type Trial } from '@/api';
 import { DepthChart, kDepthHeight_px, type Bone, type Cursor } from '@/charts';
+import { say } from '@/language';
 import { Card, Notice, Skeleton } from '@/ui';
 
 /** The bone behind the curve, where it may be known. */
@@ -29,9 +30,9 @@ export function DepthPanel({ trial, cursor }: { readonly trial: Trial; readonly 
   const bone = useMemo(() => boneOf(trial), [trial]);
   const felt_m = trial.answer?.breach ? trial.answer.depth_m : null;
   return (
-    <Card title="Force against depth">
+    <Card title={say('Force against depth')}>
       {curve.isError ? (
-        <Notice tone="bad" title="The curve could not be loaded." onRetry={() => void curve.refetch()}>
+        <Notice tone="bad" title={say('The curve could not be loaded.')} onRetry={() => void curve.refetch()}>
           {curve.error.message}
         </Notice>
       ) : null}

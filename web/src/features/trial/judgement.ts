@@ -1,5 +1,7 @@
 /** Compares the answer with the truth, by the rule of the metric answer_right. */
 import type { Answer, Scenario, Truth } from '@/api';
+import { marked, say } from '@/language';
+import { wallName } from '@/ui';
 import { formatLength, formatShare } from '@/units';
 
 export interface Judgement {
@@ -9,28 +11,37 @@ export interface Judgement {
   readonly truth: string;
 }
 
+const kIntactReported = marked('Incorrect: a breach was reported where there is none'),
+  kMissed = marked('Incorrect: the breach was missed');
+
+const confidenceText = ({ confidence }: Answer): string =>
+  confidence === null ? '' : ` ${say('Confidence {share}.', { share: formatShare(confidence) })}`;
+
 function palpationAnswerText(answer: Answer | null): string {
-  if (!answer) return 'No answer was given.';
-  const confidence = answer.confidence === null ? '' : ` Confidence ${formatShare(answer.confidence)}.`;
-  if (!answer.breach) return `No breach.${confidence}`;
-  return `${answer.wall === null ? 'A breach, no wall named.' : `A breach of the ${answer.wall} wall.`}${confidence}`;
+  if (!answer) return say('No answer was given.');
+  if (!answer.breach) return say('No breach.') + confidenceText(answer);
+  const breach =
+    answer.wall === null
+      ? say('A breach, no wall named.')
+      : say('A breach of the {wall} wall.', { wall: wallName(answer.wall) });
+  return breach + confidenceText(answer);
 }
 
 function truthText(truth: Truth | null): string {
-  if (!truth) return 'Not released for this trial.';
-  return truth.breached === null ? 'The tract is intact.' : `The ${truth.breached} wall is breached.`;
+  if (!truth) return say('Not released for this trial.');
+  return truth.breached === null
+    ? say('The tract is intact.')
+    : say('The {wall} wall is breached.', { wall: wallName(truth.breached) });
 }
 
 export function judge(answer: Answer | null, truth: Truth | null): Judgement {
   const texts = { given: palpationAnswerText(answer), truth: truthText(truth) };
-  if (!answer) return { outcome: 'open', headline: 'No answer', ...texts };
-  if (!truth) return { outcome: 'open', headline: 'Not assessed yet', ...texts };
+  if (!answer) return { outcome: 'open', headline: say('No answer'), ...texts };
+  if (!truth) return { outcome: 'open', headline: say('Not assessed yet'), ...texts };
   if (answer.breach !== (truth.breached !== null)) {
     return {
       outcome: 'incorrect',
-      headline: answer.breach
-        ? 'Incorrect: a breach was reported where there is none'
-        : 'Incorrect: the breach was missed',
+      headline: say(answer.breach ? kIntactReported : kMissed),
       ...texts,
     };
   }
@@ -39,38 +50,42 @@ export function judge(answer: Answer | null, truth: Truth | null): Judgement {
       outcome: 'incorrect',
       headline:
         answer.wall === null
-          ? 'Incorrect: a breach was reported, but no wall was named'
-          : 'Incorrect: a breach was reported, but in another wall',
+          ? say('Incorrect: a breach was reported, but no wall was named')
+          : say('Incorrect: a breach was reported, but in another wall'),
       ...texts,
     };
   }
-  return { outcome: 'correct', headline: 'Correct', ...texts };
+  return { outcome: 'correct', headline: say('Correct'), ...texts };
 }
 
 function probingAnswerText(answer: Answer | null): string {
-  if (!answer) return 'No answer was given.';
-  const confidence = answer.confidence === null ? '' : ` Confidence ${formatShare(answer.confidence)}.`;
-  if (!answer.breach) return `No breach.${confidence}`;
-  return `A breach${answer.depth_m === null ? ', no depth named' : ` at ${formatLength(answer.depth_m)}`}.${confidence}`;
+  if (!answer) return say('No answer was given.');
+  if (!answer.breach) return say('No breach.') + confidenceText(answer);
+  const breach =
+    answer.depth_m === null
+      ? say('A breach, no depth named.')
+      : say('A breach at {depth}.', { depth: formatLength(answer.depth_m) });
+  return breach + confidenceText(answer);
 }
 
 function scenarioText(scenario: Scenario | null): string {
-  if (!scenario) return 'Not released for this trial.';
+  if (!scenario) return say('Not released for this trial.');
   const [wall] = scenario.walls;
-  if (!wall) return `${scenario.name}: no breach.`;
-  return `${scenario.name}: breach at ${scenario.walls.map(({ position_m }) => formatLength(position_m)).join(' and ')}.`;
+  if (!wall) return say('{scenario}: no breach.', { scenario: scenario.name });
+  const depths = scenario.walls.map(({ position_m }) => formatLength(position_m)).join(` ${say('and')} `);
+  return say('{scenario}: breach at {depths}.', { scenario: scenario.name, depths });
 }
 
 /** Probing: compares whether a breach was reported; its depth is shown but not assessed. */
 export function judgeProbing(answer: Answer | null, scenario: Scenario | null): Judgement {
   const texts = { given: probingAnswerText(answer), truth: scenarioText(scenario) };
-  if (!answer) return { outcome: 'open', headline: 'No answer', ...texts };
-  if (!scenario) return { outcome: 'open', headline: 'Not assessed yet', ...texts };
+  if (!answer) return { outcome: 'open', headline: say('No answer'), ...texts };
+  if (!scenario) return { outcome: 'open', headline: say('Not assessed yet'), ...texts };
   const there = scenario.walls.length > 0;
-  if (answer.breach === there) return { outcome: 'correct', headline: 'Correct', ...texts };
+  if (answer.breach === there) return { outcome: 'correct', headline: say('Correct'), ...texts };
   return {
     outcome: 'incorrect',
-    headline: there ? 'Incorrect: the breach was missed' : 'Incorrect: a breach was reported where there is none',
+    headline: say(there ? kMissed : kIntactReported),
     ...texts,
   };
 }

@@ -1,4 +1,5 @@
 import type { Metric, TrialState } from '@/api';
+import { say } from '@/language';
 import { Card, Skeleton, Term } from '@/ui';
 import { kNone, measureDigits, shownUnit } from '@/units';
 import { type Arranged, arranged, shown } from './measure-rows';
@@ -7,11 +8,11 @@ import styles from './measures.module.css';
 function Definition({ metric }: { readonly metric: Metric }) {
   return (
     <>
-      {metric.definition} <span className={styles.source}>Source: {metric.source}.</span>
+      {metric.definition} <span className={styles.source}>{say('Source: {source}.', { source: metric.source })}</span>
       {metric.note === '' ? null : (
         <>
           {' '}
-          <em>{metric.note}</em>
+          <em>{say(metric.note)}</em>
         </>
       )}
     </>
@@ -32,14 +33,14 @@ function Cell({ metric }: { readonly metric: Metric | undefined }) {
 function PublishedTable({ statistics, rows }: Pick<Arranged, 'statistics' | 'rows'>) {
   return (
     <table className={styles.table}>
-      <caption>Forces and torques on the probe</caption>
+      <caption>{say('Forces and torques on the probe')}</caption>
       <thead>
         <tr>
-          <th scope="col">Part</th>
-          <th scope="col">Unit</th>
+          <th scope="col">{say('Part')}</th>
+          <th scope="col">{say('Unit')}</th>
           {statistics.map((statistic) => (
             <th key={statistic} scope="col" className={styles.number}>
-              {statistic}
+              {say(statistic)}
             </th>
           ))}
         </tr>
@@ -48,7 +49,7 @@ function PublishedTable({ statistics, rows }: Pick<Arranged, 'statistics' | 'row
         {rows.map(({ label, symbol, cells }) => (
           <tr key={label}>
             <th scope="row">
-              {label}{' '}
+              {say(label)}{' '}
               <span className={styles.symbol}>
                 {symbol.split('_')[0]}
                 <sub>{symbol.split('_')[1]}</sub>
@@ -71,23 +72,23 @@ function Others({ metrics, caption }: { readonly metrics: readonly Metric[]; rea
       <caption>{caption}</caption>
       <thead>
         <tr>
-          <th scope="col">Measure</th>
+          <th scope="col">{say('Measure')}</th>
           <th scope="col" className={styles.number}>
-            Value
+            {say('Value')}
           </th>
-          <th scope="col">Remark</th>
+          <th scope="col">{say('Remark')}</th>
         </tr>
       </thead>
       <tbody>
         {metrics.map((metric) => (
           <tr key={metric.id}>
             <th scope="row">
-              <Term definition={<Definition metric={metric} />}>{metric.label}</Term>
+              <Term definition={<Definition metric={metric} />}>{say(metric.label)}</Term>
             </th>
             <td className={styles.number} data-metric={metric.id}>
               {shown(metric)}
             </td>
-            <td className={styles.note}>{metric.note}</td>
+            <td className={styles.note}>{say(metric.note)}</td>
           </tr>
         ))}
       </tbody>
@@ -100,27 +101,28 @@ export function Measures({ metrics, state }: { readonly metrics: readonly Metric
   const { statistics, rows, others } = arranged(metrics);
   const published = rows.length > 0;
   return (
-    <Card title="Measures">
+    <Card title={say('Measures')}>
       {metrics.length > 0 ? (
         <div className={published ? styles.tables : undefined}>
           {published ? (
             <div>
               <PublishedTable statistics={statistics} rows={rows} />
               <p className={styles.foot}>
-                Over the samples above 0.01 N and 0.001 N·m, as in the published tables. Point at a number to see its
-                definition.
+                {say(
+                  'Over the samples above 0.01 N and 0.001 N·m, as in the published tables. Point at a number to see its definition.',
+                )}
               </p>
             </div>
           ) : null}
           <Others
             metrics={others}
-            caption={published ? 'Further measures' : 'Point at a name to see its definition.'}
+            caption={published ? say('Further measures') : say('Point at a name to see its definition.')}
           />
         </div>
       ) : state === 'assessing' ? (
         <Skeleton height="220px" />
       ) : (
-        <p>This trial has no measures.</p>
+        <p>{say('This trial has no measures.')}</p>
       )}
     </Card>
   );

@@ -1,6 +1,7 @@
 import { useMemo, useState } from 'react';
 import type { Trial } from '@/api';
 import { SignalChart, whole, type Cursor, type Mark, type Range } from '@/charts';
+import { say } from '@/language';
 import { Button, Notice, usePalette } from '@/ui';
 import { marksOf, setOf, summaryOf } from './panels';
 import { useSignals } from './use-signals';
@@ -20,15 +21,15 @@ export function SignalsPanel({ trial, cursor, further = kNone }: Props) {
   const [range, setRange] = useState<Range>(() => whole(trial.duration_s));
   const [width, setWidth] = useState(kUsualWidth_px);
   const palette = usePalette();
-  const { panels, channels, note } = setOf(trial.rig);
+  const { panels, channels, note } = useMemo(() => setOf(trial.rig), [trial.rig]);
   const { detail, overview, error, retry } = useSignals(trial, channels, range, width);
   const marks = useMemo(() => [...marksOf(trial), ...further], [trial, further]);
   const summary = useMemo(() => summaryOf(trial, overview), [trial, overview]);
-  if (!(trial.duration_s > 0)) return <p>No sample was recorded.</p>;
+  if (!(trial.duration_s > 0)) return <p>{say('No sample was recorded.')}</p>;
   return (
     <>
       {error ? (
-        <Notice tone="bad" title="Part of the signals could not be loaded." onRetry={retry}>
+        <Notice tone="bad" title={say('Part of the signals could not be loaded.')} onRetry={retry}>
           {error.message}
         </Notice>
       ) : null}

@@ -1,6 +1,7 @@
 import { useQuery } from '@tanstack/react-query';
 import { pathQuery, previewQuery, type Tract, type Trial } from '@/api';
 import { TractView, type Cursor } from '@/charts';
+import { say } from '@/language';
 import { Button, Card, Notice, Skeleton, usePalette } from '@/ui';
 import { formatLength, metre } from '@/units';
 
@@ -16,18 +17,21 @@ function Picture({ trial, tract, cursor }: Props) {
   const preview = useQuery(previewQuery(trial.case_id));
   const palette = usePalette();
   const diameter = metre(2 * tract.radius_m);
-  const summary = `The tract, ${formatLength(tract.length_m)} long and ${formatLength(diameter)} wide, with the surrounding bone and the path of the tip, coloured by force.`;
+  const summary = say(
+    'The tract, {length} long and {width} wide, with the surrounding bone and the path of the tip, coloured by force.',
+    { length: formatLength(tract.length_m), width: formatLength(diameter) },
+  );
   return (
     <>
       {path.isError ? (
-        <Notice tone="bad" title="The path of the tip could not be loaded." onRetry={() => void path.refetch()}>
+        <Notice tone="bad" title={say('The path of the tip could not be loaded.')} onRetry={() => void path.refetch()}>
           {path.error.message}
         </Notice>
       ) : null}
       {preview.isError ? (
         <Notice
           tone="warn"
-          title="The bone could not be loaded. The view shows the tract without it."
+          title={say('The bone could not be loaded. The view shows the tract without it.')}
           onRetry={() => void preview.refetch()}
         >
           {preview.error.message}
@@ -56,11 +60,11 @@ function Picture({ trial, tract, cursor }: Props) {
 
 export function TractPanel({ trial, cursor }: { readonly trial: Trial; readonly cursor: Cursor }) {
   return (
-    <Card title="Tract and path of the tip">
+    <Card title={say('Tract and path of the tip')}>
       {trial.tract ? (
         <Picture trial={trial} tract={trial.tract} cursor={cursor} />
       ) : (
-        <p>The case of this trial is not on this server.</p>
+        <p>{say('The case of this trial is not on this server.')}</p>
       )}
     </Card>
   );

@@ -3,6 +3,7 @@ import { useMemo, useState, type ReactNode } from 'react';
 import { Link } from 'wouter';
 import { ApiError, forceDepthQuery, trialQuery, type Trial, personOf } from '@/api';
 import { makeCursor, type Cursor } from '@/charts';
+import { say } from '@/language';
 import { Badge, Card, Facts, Notice, Skeleton, useTitle } from '@/ui';
 import { formatCount, formatDateTime, formatDateTimeLong, formatDuration, formatRate, isoDateTime } from '@/units';
 import { breachMarks } from './breaches';
@@ -20,30 +21,37 @@ function Header({ trial }: { readonly trial: Trial }) {
   return (
     <>
       <p className={styles.back}>
-        <Link href="/trials">← Trials</Link> · <Link href={`/trials/${trial.id}/debrief`}>Debrief</Link>
+        <Link href="/trials">← {say('Trials')}</Link> ·{' '}
+        <Link href={`/trials/${trial.id}/debrief`}>{say('Debrief')}</Link>
       </p>
       <div className={styles.title}>
         <h1>{trial.case_title}</h1>
-        {trial.simulated ? <Badge tone="warn">simulated</Badge> : null}
-        {trial.complete ? null : <Badge tone="bad">incomplete recording</Badge>}
+        {trial.simulated ? <Badge tone="warn">{say('simulated')}</Badge> : null}
+        {trial.complete ? null : <Badge tone="bad">{say('incomplete recording')}</Badge>}
       </div>
       {trial.study ? <StudyPosition position={trial.study} person={trial.person} /> : null}
       <div className={styles.facts}>
         <Facts
           facts={[
-            { name: 'Person', value: personOf(trial) },
+            { name: say('Person'), value: personOf(trial) },
             {
-              name: 'Started',
+              name: say('Started'),
               value: (
                 <time dateTime={isoDateTime(trial.started_utc_us)} title={formatDateTimeLong(trial.started_utc_us)}>
                   {formatDateTime(trial.started_utc_us)}
                 </time>
               ),
             },
-            { name: 'Duration', value: formatDuration(trial.duration_s) },
-            { name: 'Station', value: trial.station },
-            { name: 'Device', value: trial.device },
-            { name: 'Recorded', value: `${formatCount(trial.samples)} samples at ${formatRate(trial.rate_Hz)}` },
+            { name: say('Duration'), value: formatDuration(trial.duration_s) },
+            { name: say('Station'), value: trial.station },
+            { name: say('Device'), value: trial.device },
+            {
+              name: say('Recorded'),
+              value: say('{samples} samples at {rate}', {
+                samples: formatCount(trial.samples),
+                rate: formatRate(trial.rate_Hz),
+              }),
+            },
           ]}
         />
       </div>
@@ -59,10 +67,10 @@ function Waiting() {
   return (
     <Frame>
       <p className={styles.back}>
-        <Link href="/trials">← Trials</Link>
+        <Link href="/trials">← {say('Trials')}</Link>
       </p>
       <div role="status" className={styles.waiting}>
-        <span className="hidden-visually">Loading the trial</span>
+        <span className="hidden-visually">{say('Loading the trial')}</span>
         <Skeleton width="360px" height="32px" />
         <Skeleton height="40px" />
         <Skeleton height="132px" />
@@ -77,14 +85,14 @@ function Failed({ reason, retry }: { readonly reason: Error; readonly retry: () 
   return (
     <Frame>
       <p className={styles.back}>
-        <Link href="/trials">← Trials</Link>
+        <Link href="/trials">← {say('Trials')}</Link>
       </p>
       {missing ? (
-        <Notice tone="warn" title="Trial not found.">
-          Check the address. The trial may be on another server.
+        <Notice tone="warn" title={say('Trial not found.')}>
+          {say('Check the address. The trial may be on another server.')}
         </Notice>
       ) : (
-        <Notice tone="bad" title="The trial could not be loaded." onRetry={retry}>
+        <Notice tone="bad" title={say('The trial could not be loaded.')} onRetry={retry}>
           {reason.message}
         </Notice>
       )}
@@ -100,7 +108,7 @@ interface Views {
 function Palpation({ trial, cursor }: Views) {
   return (
     <>
-      <Card title="Signals">
+      <Card title={say('Signals')}>
         <SignalsPanel trial={trial} cursor={cursor} />
       </Card>
       <div className={styles.views}>
@@ -116,7 +124,7 @@ function Probing({ trial, cursor }: Views) {
   const breaches = useMemo(() => breachMarks(curve.data), [curve.data]);
   return (
     <>
-      <Card title="Signals">
+      <Card title={say('Signals')}>
         <SignalsPanel trial={trial} cursor={cursor} further={breaches} />
       </Card>
       <DepthPanel trial={trial} cursor={cursor} />
@@ -129,20 +137,20 @@ export function TrialPage({ id }: { readonly id: string }) {
   const query = useQuery(trialQuery(id));
   const [cursor] = useState(makeCursor);
   const trial = query.data;
-  useTitle(trial ? `${trial.case_title}, ${personOf(trial)}` : 'Trial');
+  useTitle(trial ? `${trial.case_title}, ${personOf(trial)}` : say('Trial'));
   if (query.isPending) return <Waiting />;
-  if (!trial) return <Failed reason={query.error ?? new Error('No answer')} retry={() => void query.refetch()} />;
+  if (!trial) return <Failed reason={query.error ?? new Error(say('No answer'))} retry={() => void query.refetch()} />;
   return (
     <Frame>
       <Header trial={trial} />
       {trial.state === 'assessing' ? (
-        <Notice title="This trial is being assessed.">
-          Measures, walls and the verdict appear here after the assessment.
+        <Notice title={say('This trial is being assessed.')}>
+          {say('Measures, walls and the verdict appear here after the assessment.')}
         </Notice>
       ) : null}
       {trial.state === 'failed' ? (
-        <Notice tone="warn" title="The assessment of this trial failed.">
-          {trial.failure ?? 'The measures could not be computed.'} The recording is shown below.
+        <Notice tone="warn" title={say('The assessment of this trial failed.')}>
+          {trial.failure ?? say('The measures could not be computed.')} {say('The recording is shown below.')}
         </Notice>
       ) : null}
       <div className={styles.pair}>

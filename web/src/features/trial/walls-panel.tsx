@@ -2,6 +2,7 @@ import { useQuery } from '@tanstack/react-query';
 import { useMemo } from 'react';
 import { pathQuery, type Trial } from '@/api';
 import { kSides, lowerBound, WallMap, type Cursor, type Side } from '@/charts';
+import { say } from '@/language';
 import { Card } from '@/ui';
 
 function sideBreached(trial: Trial): Side | undefined {
@@ -25,7 +26,7 @@ export function WallsPanel({ trial, cursor }: { readonly trial: Trial; readonly 
     [coverage],
   );
   return (
-    <Card title="Walls touched">
+    <Card title={say('Walls touched')}>
       {tract && bins && bins.depthBins > 0 && bins.angleBins > 0 ? (
         <WallMap
           bins={bins}
@@ -35,9 +36,11 @@ export function WallsPanel({ trial, cursor }: { readonly trial: Trial; readonly 
           cursor={cursor}
         />
       ) : (
-        <p>{trial.state === 'assessing' ? 'Being assessed.' : 'Not available for this trial.'}</p>
+        <p>{trial.state === 'assessing' ? say('Being assessed.') : say('Not available for this trial.')}</p>
       )}
-      {trial.truth?.breached === 'anterior' ? <p>The breach is at the anterior end, beyond the side walls.</p> : null}
+      {trial.truth?.breached === 'anterior' ? (
+        <p>{say('The breach is at the anterior end, beyond the side walls.')}</p>
+      ) : null}
     </Card>
   );
 }
