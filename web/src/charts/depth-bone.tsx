@@ -1,3 +1,4 @@
+import { say } from '@/language';
 import styles from './depth-chart.module.css';
 import { ends, type Scale } from './depth-scale';
 
@@ -14,7 +15,7 @@ interface Props {
   readonly up: Scale;
 }
 
-/** Layers as shades by stiffness, the growing resistance before a wall, the wall, the soft tissue behind it, the probe stop. */
+/** Layers as shades by stiffness, the growing resistance before a wall, the wall, the soft tissue behind it, the {say('probe stop')}. */
 export function BoneBehind({ bone, across, up }: Props) {
   const stiffest = bone.layers.reduce((top, layer) => Math.max(top, layer.stiffness_N_per_m), 1);
   const [bottom, top] = ends(up);
@@ -43,7 +44,7 @@ export function BoneBehind({ bone, across, up }: Props) {
       ))}
       <line x1={stop} x2={stop} y1={top} y2={bottom} className={styles.stop} />
       <text x={stop - 4} y={top - 6} textAnchor="end" className={styles.name}>
-        probe stop
+        {say('probe stop')}
       </text>
     </g>
   );

@@ -1,5 +1,6 @@
 import { scaleLinear } from 'd3-scale';
 import { useId, useMemo, useRef, useSyncExternalStore, type PointerEvent } from 'react';
+import { say } from '@/language';
 import { axisTitle, formatForce, formatLength, kForce, kLength, metre, newton } from '@/units';
 import type { Cursor } from './cursor';
 import { BoneBehind, type Bone } from './depth-bone';
@@ -68,7 +69,7 @@ function Axes({ across, up }: { readonly across: Scale; readonly up: Scale }) {
         </g>
       ))}
       <text x={right} y={kDepthHeight_px - 2} textAnchor="end">
-        {axisTitle('Depth', kLength)}
+        {axisTitle(say('Depth'), kLength)}
       </text>
     </g>
   );
@@ -84,7 +85,10 @@ function Here({ props, across, up }: { readonly props: Props; readonly across: S
     y = up(force_N[i] ?? 0);
   const [left] = ends(across);
   const [bottom, top] = ends(up);
-  const reading = `${formatForce(newton(force_N[i] ?? 0))} at ${formatLength(metre(depth_m[i] ?? 0))}`;
+  const reading = say('{force} at {depth}', {
+    force: formatForce(newton(force_N[i] ?? 0)),
+    depth: formatLength(metre(depth_m[i] ?? 0)),
+  });
   return (
     <g className={styles.here}>
       <line x1={x} x2={x} y1={top} y2={bottom} />
@@ -101,9 +105,17 @@ function summary({ depth_m, force_N, bone, felt_m }: Props): string {
   const at = depth_m[force_N.indexOf(strongest)] ?? 0;
   const walls = bone?.walls.map((wall) => formatLength(metre(wall.at_m))).join(', ') ?? '';
   return [
-    `Force against depth: up to ${formatForce(newton(strongest))} at ${formatLength(metre(at))}, maximum depth ${formatLength(metre(most(depth_m, 0)))}.`,
-    bone === null ? '' : walls === '' ? 'No wall is breached.' : `Walls are breached at ${walls}.`,
-    felt_m === null ? '' : `A breach was reported at ${formatLength(metre(felt_m))}.`,
+    say('Force against depth: up to {force} at {depth}, maximum depth {deepest}.', {
+      force: formatForce(newton(strongest)),
+      depth: formatLength(metre(at)),
+      deepest: formatLength(metre(most(depth_m, 0))),
+    }),
+    bone === null
+      ? ''
+      : walls === ''
+        ? say('No wall is breached.')
+        : say('Walls are breached at {depths}.', { depths: walls }),
+    felt_m === null ? '' : say('A breach was reported at {depth}.', { depth: formatLength(metre(felt_m)) }),
   ]
     .filter(Boolean)
     .join(' ');
@@ -154,30 +166,30 @@ export function DepthChart(props: Props) {
       <ul className={styles.key}>
         <li>
           <i className={styles.curveKey} />
-          {axisTitle('hand force', kForce)}
+          {axisTitle(say('hand force'), kForce)}
         </li>
         {bone ? (
           <li>
             <i className={styles.layerKey} />
-            layers, darker when stiffer
+            {say('layers, darker when stiffer')}
           </li>
         ) : null}
         {bone && bone.walls.length > 0 ? (
           <>
             <li>
               <i className={styles.growKey} />
-              increasing resistance
+              {say('increasing resistance')}
             </li>
             <li>
               <i className={styles.breachKey} />
-              soft tissue behind the wall
+              {say('soft tissue behind the wall')}
             </li>
           </>
         ) : null}
         {felt_m === null ? null : (
           <li>
             <i className={styles.feltKey} />
-            breach reported here
+            {say('breach reported here')}
           </li>
         )}
       </ul>

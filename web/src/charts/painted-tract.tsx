@@ -1,4 +1,5 @@
 import { useEffect, useRef, useState } from 'react';
+import { say } from '@/language';
 import { viridis } from './colour';
 import { largestOf } from './painted-wall';
 import type { PaintedScene } from './scene/painted';
@@ -53,7 +54,7 @@ export function PaintedTract({ depth_m, angle_rad, values, radius_m, summary }: 
       <div
         className={`${styles.stage} ${styles.small}`}
         role="application"
-        aria-roledescription="3-D picture"
+        aria-roledescription={say('3-D picture')}
         aria-label={summary}
         data-part="painted"
         data-ready={scene !== null || undefined}
@@ -64,17 +65,17 @@ export function PaintedTract({ depth_m, angle_rad, values, radius_m, summary }: 
         <div ref={canvas} className={styles.canvas} hidden={failed} />
         {failed ? (
           <p className={styles.failure} role="alert">
-            The 3-D view could not be drawn. The unrolled map shows the same values.
+            {say('The 3-D view could not be drawn. The unrolled map shows the same values.')}
           </p>
         ) : scene === null ? (
           <p className={styles.failure} role="status">
-            Drawing…
+            {say('Drawing…')}
           </p>
         ) : null}
       </div>
       <figcaption className={styles.caption}>
-        <span>entry at the top</span>
-        <span className={styles.hint}>Drag or use the arrow keys to rotate.</span>
+        <span>{say('entry at the top')}</span>
+        <span className={styles.hint}>{say('Drag or use the arrow keys to rotate.')}</span>
       </figcaption>
     </figure>
   );

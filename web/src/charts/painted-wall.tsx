@@ -1,4 +1,5 @@
 import { useId, type PointerEvent } from 'react';
+import { say } from '@/language';
 import { viridis } from './colour';
 import styles from './painted-wall.module.css';
 
@@ -53,7 +54,7 @@ export function PaintedWall({ depth_m, angle_rad, values, format, onPoint }: Pro
       <div className={styles.plot}>
         <div className={styles.depth} aria-hidden="true">
           <span>{mm(depth_m[0])}</span>
-          <span>depth</span>
+          <span>{say('depth')}</span>
           <span>{mm(depth_m.at(-1))}</span>
         </div>
         <svg
@@ -65,9 +66,15 @@ export function PaintedWall({ depth_m, angle_rad, values, format, onPoint }: Pro
           onPointerMove={(event) => onPoint(cellAt(event))}
           onPointerLeave={() => onPoint(null)}
         >
-          <title
-            id={id}
-          >{`Unrolled wall of the tract. Largest value: ${worst.value === null ? 'none' : `${format(worst.value)} at ${mm(depth_m[worst.r])} to ${mm(depth_m[worst.r + 1])}`}.`}</title>
+          <title id={id}>
+            {worst.value === null
+              ? say('Unrolled wall of the tract, without a value.')
+              : say('Unrolled wall of the tract. Largest value: {value} at {from} to {to}.', {
+                  value: format(worst.value),
+                  from: mm(depth_m[worst.r]),
+                  to: mm(depth_m[worst.r + 1]),
+                })}
+          </title>
           {flat.map(({ r, c, value }) =>
             value === null ? null : (
               <rect key={`${r} ${c}`} x={c} y={r} width={1.02} height={1.02} fill={paint(value, most)} />
@@ -91,7 +98,7 @@ export function PaintedWall({ depth_m, angle_rad, values, format, onPoint }: Pro
           />{' '}
           {format(most)}
         </span>
-        <span>empty: not touched</span>
+        <span>{say('empty: not touched')}</span>
       </figcaption>
     </figure>
   );

@@ -1,4 +1,5 @@
 import { useMemo } from 'react';
+import { say } from '@/language';
 import type { SceneBone, SceneBreach, SceneTract } from './scene/types';
 import { Stage, type StageProps } from './stage';
 
@@ -41,7 +42,7 @@ export function PlanView({ tract, breach, bone, palette, summary, button }: Prop
       content={content}
       colours={kColours}
       palette={palette}
-      label="View of the bone"
+      label={say('View of the bone')}
       summary={summary}
       button={button}
     />

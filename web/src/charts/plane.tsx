@@ -1,5 +1,6 @@
 import { scaleLinear, scaleLog } from 'd3-scale';
 import { useId, useRef, type ReactNode } from 'react';
+import { say } from '@/language';
 import { tickLabels } from '@/units';
 import { kChartFiles, saveChart, type ChartData } from './chart-files';
 import { ticksOf, type Tick } from './depth-scale';
@@ -105,12 +106,12 @@ export function Plane({ across, up, height_px = 220, summary, data, children }: 
         )}
       </div>
       {data ? (
-        <div className={styles.files} role="group" aria-label={`Download the chart: ${data.name}`}>
+        <div className={styles.files} role="group" aria-label={say('Download the chart: {name}', { name: data.name })}>
           {kChartFiles.map((kind) => (
             <button
               key={kind}
               type="button"
-              aria-label={`${kind} of ${data.name}`}
+              aria-label={say('{kind} of {name}', { kind, name: data.name })}
               onClick={() => {
                 const svg = place.current?.querySelector('svg');
                 if (svg) void saveChart(kind, svg, data);

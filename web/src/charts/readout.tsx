@@ -1,4 +1,5 @@
 import { useSyncExternalStore } from 'react';
+import { say } from '@/language';
 import { axisTitle, formatTime, kNone, rounded, second, united, type Quantity } from '@/units';
 import type { Cursor } from './cursor';
 import styles from './signal-chart.module.css';
@@ -70,5 +71,9 @@ export function Readout({
 /** The moment under the pointer, in the chart's tool bar. */
 export function Moment({ cursor }: { readonly cursor: Cursor }) {
   const moment = useSyncExternalStore(cursor.subscribe, cursor.now);
-  return <span className={styles.moment}>{moment === null ? '' : `at ${formatTime(second(moment), 3)}`}</span>;
+  return (
+    <span className={styles.moment}>
+      {moment === null ? '' : say('at {time}', { time: formatTime(second(moment), 3) })}
+    </span>
+  );
 }

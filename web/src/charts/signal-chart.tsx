@@ -1,5 +1,6 @@
 import { useEffect, useId, useRef, type ReactNode } from 'react';
 import 'uplot/dist/uPlot.min.css';
+import { say } from '@/language';
 import { formatCount, formatTime, second } from '@/units';
 import type { Cursor } from './cursor';
 import { OverviewStrip } from './overview-strip';
@@ -39,9 +40,9 @@ const kNoSpans: readonly Span[] = [];
 const kAxes_px = 64; // the ordinate's axis and the right margin: no data there
 
 function resolution(samplesPerPoint: number): string {
-  if (samplesPerPoint === 0) return 'loading';
-  if (samplesPerPoint <= 1) return 'every sample';
-  return `minimum and maximum of ${formatCount(samplesPerPoint)} samples`;
+  if (samplesPerPoint === 0) return say('loading');
+  if (samplesPerPoint <= 1) return say('every sample');
+  return say('minimum and maximum of {samples} samples', { samples: formatCount(samplesPerPoint) });
 }
 
 /** Panels over one another with one time axis, one cursor and one view. */
@@ -86,12 +87,17 @@ export function SignalChart(props: Props) {
           <span className={styles.resolution}>{resolution(detail.samplesPerPoint)}</span>
           <Moment cursor={cursor} />
         </p>
-        <div className={styles.buttons} role="group" aria-label="View of the signals">
-          {button('Earlier', '←', () => onRange(panned(range, -0.25, duration_s)), range.from <= 0)}
-          {button('Later', '→', () => onRange(panned(range, 0.25, duration_s)), range.to >= duration_s)}
-          {button('Zoom in', '+', () => onRange(zoomed(range, 0.5, middle, duration_s)))}
-          {button('Zoom out', '−', () => onRange(zoomed(range, 2, middle, duration_s)), isWhole(range, duration_s))}
-          {button('All: show the whole trial', 'All', reset, isWhole(range, duration_s))}
+        <div className={styles.buttons} role="group" aria-label={say('View of the signals')}>
+          {button(say('Earlier'), '←', () => onRange(panned(range, -0.25, duration_s)), range.from <= 0)}
+          {button(say('Later'), '→', () => onRange(panned(range, 0.25, duration_s)), range.to >= duration_s)}
+          {button(say('Zoom in'), '+', () => onRange(zoomed(range, 0.5, middle, duration_s)))}
+          {button(
+            say('Zoom out'),
+            '−',
+            () => onRange(zoomed(range, 2, middle, duration_s)),
+            isWhole(range, duration_s),
+          )}
+          {button(say('All: show the whole trial'), say('All'), reset, isWhole(range, duration_s))}
         </div>
       </div>
       {/* eslint-disable-next-line jsx-a11y/no-noninteractive-element-interactions -- an application takes keys */}
@@ -99,9 +105,9 @@ export function SignalChart(props: Props) {
         ref={place}
         className={styles.panels}
         role="application"
-        aria-roledescription="chart"
+        aria-roledescription={say('chart')}
         data-part="panels"
-        aria-label="Signals against time. Arrow keys move and zoom, 0 shows the whole trial."
+        aria-label={say('Signals against time. Arrow keys move and zoom, 0 shows the whole trial.')}
         // eslint-disable-next-line jsx-a11y/no-noninteractive-tabindex -- an application takes keys
         tabIndex={0}
         onKeyDown={(event) => onNavigationKey(event, view)}
@@ -144,8 +150,10 @@ export function SignalChart(props: Props) {
         />
       ) : null}
       <p className={styles.hint}>
-        {note} Drag across to zoom, drag the strip to move, double-click for the whole trial. Wheel: zoom after a click
-        or with Ctrl, move with Shift.
+        {note}{' '}
+        {say(
+          'Drag across to zoom, drag the strip to move, double-click for the whole trial. Wheel: zoom after a click or with Ctrl, move with Shift.',
+        )}
       </p>
       <figcaption id={summaryId} className="hidden-visually">
         {summary}

@@ -1,4 +1,5 @@
 import { useEffect, useId, useRef, type KeyboardEvent, type PointerEvent } from 'react';
+import { say } from '@/language';
 import { formatLength, metre } from '@/units';
 import { letterAt, onPlane, onSlice, type SlicePicture, type SliceMark } from './slice-places';
 import type { Vec3 } from './scene/types';
@@ -119,7 +120,7 @@ export function SliceView({
   return (
     <div className={styles.view} data-plane={name.toLowerCase()} data-ready={(picture !== null && !late) || undefined}>
       <div className={styles.head}>
-        <h3 id={id}>{name}</h3>
+        <h3 id={id}>{say(name)}</h3>
         <span className={styles.at}>{formatLength(metre(at_m))}</span>
       </div>
       <div className={styles.frame}>
@@ -132,8 +133,11 @@ export function SliceView({
                 className={styles.drawing}
                 viewBox={`0 0 ${picture.width} ${picture.height}`}
                 role="application"
-                aria-roledescription="slice"
-                aria-label={`${name} slice. Click or drag places the ${chosen}; arrow keys move it by half a millimetre, with Shift by a tenth; Page Up and Page Down change the slice.`}
+                aria-roledescription={say('slice')}
+                aria-label={say(
+                  '{name} slice. Click or drag places the {mark}; arrow keys move it by half a millimetre, with Shift by a tenth; Page Up and Page Down change the slice.',
+                  { name: say(name), mark: chosen },
+                )}
                 tabIndex={0}
                 onKeyDown={onKeyDown}
                 onPointerDown={begin}
@@ -189,7 +193,7 @@ export function SliceView({
               </svg>
             ) : (
               <p className={styles.waiting} role="status">
-                Loading…
+                {say('Loading…')}
               </p>
             )}
           </div>
@@ -204,7 +208,7 @@ export function SliceView({
       </div>
       <label className={styles.slider}>
         <span className="hidden-visually">
-          {name} slice, from {ends[0]} to {ends[1]}
+          {say('{name} slice, from {first} to {last}', { name: say(name), first: ends[0], last: ends[1] })}
         </span>
         <span aria-hidden="true">{ends[0]}</span>
         <input

@@ -1,4 +1,5 @@
 import { useEffect, useRef, useState, type ReactNode } from 'react';
+import { marked, say } from '@/language';
 import { canDraw, rgb } from './draw';
 import type { Looks, Scene, SceneContent } from './scene';
 import type { SceneColours, ViewName } from './scene/types';
@@ -21,10 +22,10 @@ export interface StageProps {
 }
 
 const kViews: readonly { name: ViewName; text: string; label: string }[] = [
-  { name: 'start', text: 'Reset', label: 'Reset the view' },
-  { name: 'superior', text: 'Superior', label: 'Look from superior' },
-  { name: 'medial', text: 'Medial', label: 'Look from medial' },
-  { name: 'along', text: 'Along', label: 'Look along the tract, as the surgeon does' },
+  { name: 'start', text: marked('Reset'), label: marked('Reset the view') },
+  { name: 'superior', text: marked('Superior'), label: marked('Look from superior') },
+  { name: 'medial', text: marked('Medial'), label: marked('Look from medial') },
+  { name: 'along', text: marked('Along'), label: marked('Look along the tract, as the surgeon does') },
 ];
 
 /** The scene in `canvas`, anew for each content; one that replaces another of its kind is seen from the same place. */
@@ -48,18 +49,18 @@ function useScene(content: SceneContent | null, onScene: StageProps['onScene']) 
     };
     const start = async () => {
       if (!canDraw()) {
-        setFailure('This browser does not support WebGL 2, which the 3-D view needs.');
+        setFailure(say('This browser does not support WebGL 2, which the 3-D view needs.'));
         return;
       }
       const { makeScene } = await import('./scene');
       if (gone) return;
       made = makeScene(place, holder, content, looked[kind]);
       place.querySelector('canvas')?.addEventListener('webglcontextlost', () => {
-        if (!gone) setFailure('The graphics processor lost the 3-D view. Reload the page to draw it again.');
+        if (!gone) setFailure(say('The graphics processor lost the 3-D view. Reload the page to draw it again.'));
       });
       stands(made);
     };
-    start().catch(() => setFailure('The 3-D view could not be drawn.'));
+    start().catch(() => setFailure(say('The 3-D view could not be drawn.')));
     return () => {
       gone = true;
       if (made) looked[kind] = made.looks();
@@ -101,14 +102,19 @@ export function Stage({ content, colours, palette, label, summary, caption, butt
     <figure className={styles.figure}>
       <div className={styles.tools} role="group" aria-label={label}>
         {kViews.map(({ name, text, label: viewLabel }) => (
-          <span key={name}>{button(viewLabel, text, () => scene?.look(name))}</span>
+          <span key={name}>{button(say(viewLabel), say(text), () => scene?.look(name))}</span>
         ))}
         <span className={styles.gap} />
         {content?.bone ? (
           <>
-            {button('Cut open: hide the superior half of the bone', 'Cut open', () => setShown('cut'), shown === 'cut')}
-            {button('Show the whole bone', 'Whole', () => setShown('whole'), shown === 'whole')}
-            {button('Hide the bone', 'Hide', () => setShown('none'), shown === 'none')}
+            {button(
+              say('Cut open: hide the superior half of the bone'),
+              say('Cut open'),
+              () => setShown('cut'),
+              shown === 'cut',
+            )}
+            {button(say('Show the whole bone'), say('Whole'), () => setShown('whole'), shown === 'whole')}
+            {button(say('Hide the bone'), say('Hide'), () => setShown('none'), shown === 'none')}
           </>
         ) : null}
       </div>
@@ -117,7 +123,7 @@ export function Stage({ content, colours, palette, label, summary, caption, butt
         ref={stage}
         className={styles.stage}
         role="application"
-        aria-roledescription="3-D picture"
+        aria-roledescription={say('3-D picture')}
         aria-label={summary}
         data-part="scene"
         data-ready={scene !== null || undefined}
@@ -130,19 +136,19 @@ export function Stage({ content, colours, palette, label, summary, caption, butt
         <div ref={labels} className={styles.labels} aria-hidden="true" hidden={failure !== ''} />
         {failure !== '' ? (
           <p className={styles.failure} role="alert">
-            {failure} Everything else on this page is complete without it.
+            {failure} {say('Everything else on this page is complete without it.')}
           </p>
         ) : null}
         {failure === '' && scene === null ? (
           <p className={styles.failure} role="status">
-            Drawing…
+            {say('Drawing…')}
           </p>
         ) : null}
       </div>
       <figcaption className={styles.caption}>
         {caption}
         <span className={styles.hint}>
-          Drag to rotate, Shift-drag to move, click and use the wheel to zoom. Arrow keys rotate.
+          {say('Drag to rotate, Shift-drag to move, click and use the wheel to zoom. Arrow keys rotate.')}
         </span>
       </figcaption>
     </figure>

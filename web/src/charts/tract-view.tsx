@@ -1,4 +1,5 @@
 import { useEffect, useMemo, useState } from 'react';
+import { say } from '@/language';
 import { formatForce, newton } from '@/units';
 import { viridis } from './colour';
 import type { Cursor } from './cursor';
@@ -54,8 +55,8 @@ export function TractView({ tract, path, bone, cursor, ghost = null, palette, su
   }, [scene, cursor, ghostAt]);
   const scale = (
     <span className={styles.scale}>
-      tip force 0<i style={{ background: kScale }} />
-      {formatForce(newton(most_N))} and above
+      {say('tip force')} 0<i style={{ background: kScale }} />
+      {say('{force} and above', { force: formatForce(newton(most_N)) })}
     </span>
   );
   return (
@@ -63,7 +64,7 @@ export function TractView({ tract, path, bone, cursor, ghost = null, palette, su
       content={content}
       colours={kColours}
       palette={palette}
-      label="View of the tract"
+      label={say('View of the tract')}
       summary={summary}
       button={button}
       caption={scale}

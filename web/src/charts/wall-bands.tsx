@@ -1,3 +1,4 @@
+import { say } from '@/language';
 import { formatCount, formatFigure, formatLength, metre, type Metre } from '@/units';
 import { kHeatLevels, kSides, type Side } from './coverage';
 import styles from './wall-map.module.css';
@@ -27,19 +28,22 @@ export function bandLevel(dPrime: number | null, least: number): number {
 const best = (one: SideBands | undefined) =>
   one?.dPrime.reduce<number | null>((most, d) => (d !== null && (most === null || d > most) ? d : most), null) ?? null;
 
-const words = (d: number | null) => (d === null ? 'not tried' : `d′ ${formatFigure(d, '', 2)}`);
+const words = (d: number | null) => (d === null ? say('not tried') : `d′ ${formatFigure(d, '', 2)}`);
 
 /** The tract unrolled, mouth at the top: how well a breach at each depth of each side could be told. */
 export function WallBands({ bands, length_m, least }: Props) {
   const of = (side: Side) => bands.find((one) => one.side === side);
   const cells = Math.max(1, Math.ceil(length_m / kCell_m));
-  const summary = `Tract unrolled. Best places: ${kSides.map((side) => `${side} ${words(best(of(side)))}`).join(', ')}; ${formatCount(least)} is asked for.`;
+  const summary = say('Tract unrolled. Best places: {places}; {least} is asked for.', {
+    places: kSides.map((side) => `${say(side)} ${words(best(of(side)))}`).join(', '),
+    least: formatCount(least),
+  });
   return (
     <figure className={styles.figure}>
       <div className={styles.heads}>
         {kSides.map((side) => (
           <div key={side}>
-            {side}
+            {say(side)}
             <span className={styles.share} data-side={side}>
               {words(best(of(side)))}
             </span>
@@ -48,8 +52,8 @@ export function WallBands({ bands, length_m, least }: Props) {
       </div>
       <div className={styles.plot}>
         <div className={styles.depth} aria-hidden="true">
-          <span>0 mm</span>
-          <span>depth</span>
+          <span>{formatLength(metre(0), 0)}</span>
+          <span>{say('depth')}</span>
           <span>{formatLength(length_m, 0)}</span>
         </div>
         <svg
@@ -72,7 +76,13 @@ export function WallBands({ bands, length_m, least }: Props) {
                   className={styles.cell}
                   data-heat={bandLevel(dPrime, least)}
                 >
-                  <title>{`${side}, ${formatLength(metre(at_m))} deep: ${words(dPrime)}`}</title>
+                  <title>
+                    {say('{side}, {depth} deep: {words}', {
+                      side: say(side),
+                      depth: formatLength(metre(at_m)),
+                      words: words(dPrime),
+                    })}
+                  </title>
                 </rect>
               );
             }),
@@ -84,11 +94,11 @@ export function WallBands({ bands, length_m, least }: Props) {
       </div>
       <figcaption className={styles.caption}>
         <span className={styles.scale}>
-          cannot be told{' '}
+          {say('cannot be told')}{' '}
           {Array.from({ length: kHeatLevels + 1 }, (_, level) => (
             <i key={level} data-heat={level} />
           ))}{' '}
-          d′ {2 * least} and more
+          {say('d′ {value} and more', { value: formatCount(2 * least) })}
         </span>
       </figcaption>
     </figure>

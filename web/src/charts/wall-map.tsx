@@ -1,4 +1,5 @@
 import { useState, useSyncExternalStore, type PointerEvent } from 'react';
+import { say } from '@/language';
 import { formatCount, formatLength, formatShare, metre, share, type Metre } from '@/units';
 import { binOf, coveredBySide, heatPaths, kHeatLevels, kSides, sideOf, type Side, type WallBins } from './coverage';
 import type { Cursor } from './cursor';
@@ -39,27 +40,33 @@ export function WallMap(props: Props) {
     const angle = binOf(column, angleBins);
     const depth = metre(((row + 0.5) / depthBins) * length_m);
     setPointed(
-      `${sideOf(angle, angleBins)}, ${formatLength(depth)} deep: ${formatCount(samples[row * angleBins + angle] ?? 0)} samples in contact`,
+      say('{side}, {depth} deep: {samples} samples in contact', {
+        side: say(sideOf(angle, angleBins)),
+        depth: formatLength(depth),
+        samples: formatCount(samples[row * angleBins + angle] ?? 0),
+      }),
     );
   };
-  const summary = `Wall of the tract unrolled. Touched: ${kSides.map((side) => `${side} ${formatShare(ofSide(side))}`).join(', ')}.`;
+  const summary = say('Wall of the tract unrolled. Touched: {sides}.', {
+    sides: kSides.map((side) => `${say(side)} ${formatShare(ofSide(side))}`).join(', '),
+  });
   return (
     <figure className={styles.figure}>
       <div className={styles.heads}>
         {kSides.map((side) => (
           <div key={side} className={side === breached ? styles.breached : undefined}>
-            <strong aria-hidden="true">{kInitial[side]}</strong> {side}
+            <strong aria-hidden="true">{kInitial[side]}</strong> {say(side)}
             <span className={styles.share} data-side={side}>
               {formatShare(ofSide(side))}
             </span>
-            {side === breached ? <span className={styles.tag}>breached here</span> : null}
+            {side === breached ? <span className={styles.tag}>{say('breached here')}</span> : null}
           </div>
         ))}
       </div>
       <div className={styles.plot}>
         <div className={styles.depth} aria-hidden="true">
-          <span>0 mm</span>
-          <span>depth</span>
+          <span>{formatLength(metre(0), 0)}</span>
+          <span>{say('depth')}</span>
           <span>{formatLength(length_m, 0)}</span>
         </div>
         <svg
@@ -89,11 +96,11 @@ export function WallMap(props: Props) {
       </div>
       <figcaption className={styles.caption}>
         <span className={styles.scale}>
-          not touched{' '}
+          {say('not touched')}{' '}
           {Array.from({ length: kHeatLevels + 1 }, (_, level) => (
             <i key={level} data-heat={level} />
           ))}{' '}
-          longest contact
+          {say('longest contact')}
         </span>
         <span className={styles.pointed}>{pointed}</span>
       </figcaption>
