@@ -15,7 +15,7 @@ interface Props {
   readonly up: Scale;
 }
 
-/** Layers as shades by stiffness, the growing resistance before a wall, the wall, the soft tissue behind it, the {say('probe stop')}. */
+/** Layers as shades by stiffness, the growing resistance before a wall, the wall, the soft tissue behind it, the probe stop. */
 export function BoneBehind({ bone, across, up }: Props) {
   const stiffest = bone.layers.reduce((top, layer) => Math.max(top, layer.stiffness_N_per_m), 1);
   const [bottom, top] = ends(up);

@@ -7,13 +7,14 @@ import {
   type NotificationDelivery,
   type OwnNotifications,
 } from '@/api';
+import { marked, say } from '@/language';
 import { Button, Card, Field, Notice, Select, useTitle } from '@/ui';
 import styles from './notifications.module.css';
 
 const kDeliveries: readonly { readonly value: NotificationDelivery; readonly text: string }[] = [
-  { value: 'off', text: 'Off' },
-  { value: 'immediate', text: 'At once' },
-  { value: 'daily', text: 'Once a day' },
+  { value: 'off', text: marked('Off') },
+  { value: 'immediate', text: marked('At once') },
+  { value: 'daily', text: marked('Once a day') },
 ];
 
 function Choices({ now }: { readonly now: OwnNotifications }) {
@@ -37,7 +38,7 @@ function Choices({ now }: { readonly now: OwnNotifications }) {
   return (
     <form className={styles.form} onSubmit={submit}>
       <Field
-        label="E-mail address"
+        label={say('E-mail address')}
         type="email"
         autoComplete="email"
         maxLength={254}
@@ -48,9 +49,9 @@ function Choices({ now }: { readonly now: OwnNotifications }) {
       {choices.map(({ kind, meaning, delivery }) => (
         <Select
           key={kind}
-          label={meaning}
+          label={say(meaning)}
           value={delivery}
-          options={kDeliveries}
+          options={kDeliveries.map((one) => ({ ...one, text: say(one.text) }))}
           onChange={({ target }) => {
             const chosen = kDeliveries.find(({ value }) => value === target.value)?.value ?? 'off';
             setChoices(choices.map((one) => (one.kind === kind ? { ...one, delivery: chosen } : one)));
@@ -58,23 +59,23 @@ function Choices({ now }: { readonly now: OwnNotifications }) {
         />
       ))}
       <p className={styles.muted}>
-        A message names what happened and links to its page. Messages of once a day come at 06:00 UTC.
+        {say('A message names what happened and links to its page. Messages of once a day come at 06:00 UTC.')}
       </p>
       {failed ? (
-        <Notice tone="bad" title="The action failed.">
+        <Notice tone="bad" title={say('The action failed.')}>
           {failed.message}
         </Notice>
       ) : tested.isSuccess ? (
-        <Notice title="A test message is on its way." />
+        <Notice title={say('A test message is on its way.')} />
       ) : saved.isSuccess ? (
-        <Notice title="Saved." />
+        <Notice title={say('Saved.')} />
       ) : null}
       <div className={styles.buttons}>
         <Button look="solid" type="submit" disabled={saved.isPending}>
-          Save
+          {say('Save')}
         </Button>
         <Button onClick={() => tested.mutate()} disabled={tested.isPending || now.address === null || !now.mail}>
-          Send a test
+          {say('Send a test')}
         </Button>
       </div>
     </form>
@@ -83,30 +84,32 @@ function Choices({ now }: { readonly now: OwnNotifications }) {
 
 /** Of what the signed-in person is told. */
 export function OwnNotificationsPage() {
-  useTitle('Notifications');
+  useTitle(say('Notifications'));
   const query = useQuery(ownNotificationsQuery);
   return (
     <div className={styles.page}>
       <div>
-        <h1>Notifications</h1>
-        <p className={styles.lead}>Choose what you are told by e-mail. Everything is off until you choose it.</p>
+        <h1>{say('Notifications')}</h1>
+        <p className={styles.lead}>
+          {say('Choose what you are told by e-mail. Everything is off until you choose it.')}
+        </p>
       </div>
       {query.isError ? (
-        <Notice tone="bad" title="The choices could not be loaded." onRetry={() => void query.refetch()}>
+        <Notice tone="bad" title={say('The choices could not be loaded.')} onRetry={() => void query.refetch()}>
           {query.error.message}
         </Notice>
       ) : null}
       {query.data && !query.data.mail ? (
-        <Notice tone="warn" title="This server sends no e-mail yet.">
-          Your choices are kept. An administrator states the mail server.
+        <Notice tone="warn" title={say('This server sends no e-mail yet.')}>
+          {say('Your choices are kept. An administrator states the mail server.')}
         </Notice>
       ) : null}
-      <Card title="E-mail">
+      <Card title={say('E-mail')}>
         {query.data ? (
           query.data.choices.length > 0 ? (
             <Choices now={query.data} />
           ) : (
-            <p>There are no events for your role.</p>
+            <p>{say('There are no events for your role.')}</p>
           )
         ) : null}
       </Card>
