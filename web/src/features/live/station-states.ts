@@ -1,6 +1,8 @@
 /** Name, colour and description of each state of a station. */
 import type { StationState } from '@/api';
+import { marked, say } from '@/language';
 import type { Tone } from '@/ui';
+import { formatCount } from '@/units';
 
 interface StateLabel {
   readonly name: string;
@@ -10,31 +12,33 @@ interface StateLabel {
 
 export const kStates: Record<StationState['state'], StateLabel> = {
   away: {
-    name: 'Offline',
+    name: marked('Offline'),
     tone: 'neutral',
-    description: 'The station is switched off or cannot reach the server. It saves its recordings on its own disk.',
+    description: marked(
+      'The station is switched off or cannot reach the server. It saves its recordings on its own disk.',
+    ),
   },
-  idle: { name: 'Available', tone: 'good', description: 'Waiting for a person to sign in.' },
+  idle: { name: marked('Available'), tone: 'good', description: marked('Waiting for a person to sign in.') },
   preparing: {
-    name: 'Preparing',
+    name: marked('Preparing'),
     tone: 'accent',
-    description: 'Loading a case, or moving the device to its start position.',
+    description: marked('Loading a case, or moving the device to its start position.'),
   },
-  trial: { name: 'In a trial', tone: 'accent', description: 'A person is palpating or probing.' },
+  trial: { name: marked('In a trial'), tone: 'accent', description: marked('A person is palpating or probing.') },
   questions: {
-    name: 'Answering',
+    name: marked('Answering'),
     tone: 'accent',
-    description: 'The trial has ended; the person is answering the questions.',
+    description: marked('The trial has ended; the person is answering the questions.'),
   },
   stopped: {
-    name: 'Stopped',
+    name: marked('Stopped'),
     tone: 'warn',
-    description: 'Stopped from the server. A person at the station must resume operation.',
+    description: marked('Stopped from the server. A person at the station must resume operation.'),
   },
   fault: {
-    name: 'Fault',
+    name: marked('Fault'),
     tone: 'bad',
-    description: 'The station stopped itself with zero force. A person at the station must check it.',
+    description: marked('The station stopped itself with zero force. A person at the station must check it.'),
   },
 };
 
@@ -61,15 +65,15 @@ export const isAtWork = ({ state }: StationState) =>
 export function summaryOf(stations: readonly StationState[]): string {
   const count = (...states: StationState['state'][]) => stations.filter(({ state }) => states.includes(state)).length;
   const parts = [
-    [count('trial', 'questions', 'preparing'), 'in use'],
-    [count('fault', 'stopped'), 'needing attention'],
-    [count('idle'), 'available'],
-    [count('away'), 'offline'],
+    [count('trial', 'questions', 'preparing'), marked('{n} in use')],
+    [count('fault', 'stopped'), marked('{n} needing attention')],
+    [count('idle'), marked('{n} available')],
+    [count('away'), marked('{n} offline')],
   ] as const;
   return (
     parts
       .filter(([n]) => n > 0)
-      .map(([n, word]) => `${n} ${word}`)
-      .join(', ') || 'no stations'
+      .map(([n, words]) => say(words, { n: formatCount(n) }))
+      .join(', ') || say('no stations')
   );
 }

@@ -2,20 +2,21 @@ import { useQuery } from '@tanstack/react-query';
 import { useMemo, useState } from 'react';
 import { boundsOf, sliceQuery, type SlicePlane, type SourceVolume, type Vec3 } from '@/api';
 import { SliceView, type SliceMark } from '@/charts';
+import { marked, say } from '@/language';
 import { Button, Card, Field, Notice, Select } from '@/ui';
 import { formatLength, metre } from '@/units';
 import styles from './volumes.module.css';
 
 const kPlanes: readonly { plane: SlicePlane; name: string; axis: 0 | 1 | 2; ends: readonly [string, string] }[] = [
-  { plane: 'axial', name: 'Axial', axis: 2, ends: ['feet', 'head'] },
-  { plane: 'coronal', name: 'Coronal', axis: 1, ends: ['front', 'back'] },
-  { plane: 'sagittal', name: 'Sagittal', axis: 0, ends: ['right', 'left'] },
+  { plane: 'axial', name: marked('Axial'), axis: 2, ends: [marked('feet'), marked('head')] },
+  { plane: 'coronal', name: marked('Coronal'), axis: 1, ends: [marked('front'), marked('back')] },
+  { plane: 'sagittal', name: marked('Sagittal'), axis: 0, ends: [marked('right'), marked('left')] },
 ];
 const kWindows = {
-  bone: { text: 'Bone', low: -200, high: 1100 },
-  soft: { text: 'Soft tissue', low: -160, high: 240 },
-  lung: { text: 'Lung', low: -1350, high: 150 },
-  wide: { text: 'Wide', low: -1000, high: 2000 },
+  bone: { text: marked('Bone'), low: -200, high: 1100 },
+  soft: { text: marked('Soft tissue'), low: -160, high: 240 },
+  lung: { text: marked('Lung'), low: -1350, high: 150 },
+  wide: { text: marked('Wide'), low: -1000, high: 2000 },
 } as const;
 type WindowName = keyof typeof kWindows | 'own';
 const kWindowNames = ['bone', 'soft', 'lung', 'wide'] as const;
@@ -69,7 +70,7 @@ function OnePlane({
   return (
     <div>
       {query.isError ? (
-        <Notice tone="bad" title="This slice could not be loaded." onRetry={() => void query.refetch()}>
+        <Notice tone="bad" title={say('This slice could not be loaded.')} onRetry={() => void query.refetch()}>
           {query.error.message}
         </Notice>
       ) : null}
@@ -81,7 +82,7 @@ function OnePlane({
         at_m={at}
         from_m={low[axis]}
         to_m={high[axis]}
-        ends={ends}
+        ends={[say(ends[0]), say(ends[1])]}
         marks={marks}
         chosen={chosen}
         onAt={(to) => onFocus([axis === 0 ? to : focus[0], axis === 1 ? to : focus[1], axis === 2 ? to : focus[2]])}
@@ -112,44 +113,46 @@ export function Viewer({ volume }: { readonly volume: SourceVolume }) {
     if (done) setEnd(id === 'start' ? 'end' : 'start');
   };
   return (
-    <Card title="Slices">
+    <Card title={say('Slices')}>
       <div className={styles.stack}>
         <div className={styles.tools}>
           <Select
-            label="Window"
+            label={say('Window')}
             value={chosen}
             onChange={(event) => setChosen(kWindowNames.find((one) => one === event.target.value) ?? 'own')}
             options={[
-              ...kWindowNames.map((value) => ({ value, text: kWindows[value].text })),
-              { value: 'own', text: 'Other…' },
+              ...kWindowNames.map((value) => ({ value, text: say(kWindows[value].text) })),
+              { value: 'own', text: say('Other…') },
             ]}
           />
           {chosen === 'own' ? (
             <>
               <Field
-                label="Black at, CT value"
+                label={say('Black at, CT value')}
                 inputMode="numeric"
                 value={own.low}
                 onChange={(event) => setOwn({ ...own, low: event.target.value })}
               />
               <Field
-                label="White at, CT value"
+                label={say('White at, CT value')}
                 inputMode="numeric"
                 value={own.high}
-                error={valid ? '' : 'More than black is expected.'}
+                error={valid ? '' : say('More than black is expected.')}
                 onChange={(event) => setOwn({ ...own, high: event.target.value })}
               />
             </>
           ) : null}
           <Select
-            label="Zoom"
+            label={say('Zoom')}
             value={zoom}
             onChange={(event) => setZoom(event.target.value)}
             options={kZooms.map((value) => ({ value: String(value), text: `${value} ×` }))}
           />
           <p className={styles.ruler} role="status">
-            Ruler:{' '}
-            <strong>{ruler?.to ? formatLength(metre(distance(ruler.from, ruler.to)), 1) : 'click two points'}</strong>
+            {say('Ruler')}:{' '}
+            <strong>
+              {ruler?.to ? formatLength(metre(distance(ruler.from, ruler.to)), 1) : say('click two points')}
+            </strong>
           </p>
           <Button
             disabled={ruler === null}
@@ -158,7 +161,7 @@ export function Viewer({ volume }: { readonly volume: SourceVolume }) {
               setEnd('start');
             }}
           >
-            Clear ruler
+            {say('Clear ruler')}
           </Button>
         </div>
         <div className={styles.slices}>

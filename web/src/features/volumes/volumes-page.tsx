@@ -2,13 +2,18 @@ import { useMutation, useQuery, useQueryClient } from '@tanstack/react-query';
 import { useState } from 'react';
 import { Link, useLocation } from 'wouter';
 import { addVolume, sourceVolumesQuery, type SourceVolume } from '@/api';
+import { marked, say } from '@/language';
 import { Badge, Button, Card, DataTable, DropZone, Field, Notice, Progress, useTitle, type Dropped } from '@/ui';
 import { formatBytes, formatCount, formatDateTime, formatShare, share } from '@/units';
 import { nameFrom, pack } from './pack';
 import styles from './volumes.module.css';
 
 const kTones = { held: 'warn', released: 'good', refused: 'bad' } as const;
-export const kStates = { held: 'waits for review', released: 'released', refused: 'refused' } as const;
+export const kStates = {
+  held: marked('waits for review'),
+  released: marked('released'),
+  refused: marked('refused'),
+} as const;
 
 function Upload() {
   const client = useQueryClient();
@@ -31,18 +36,18 @@ function Upload() {
   const size = files.reduce((sum, { file }) => sum + file.size, 0);
   const phase =
     gone === null
-      ? 'Packing the files…'
+      ? say('Packing the files…')
       : gone < 1
-        ? `Uploading: ${formatShare(share(gone))} of the file`
-        : 'The server reads the volume and takes the patient’s identity out…';
+        ? say('Uploading: {share} of the file', { share: formatShare(share(gone)) })
+        : say('The server reads the volume and takes the patient’s identity out…');
   return (
-    <Card title="Upload a volume">
+    <Card title={say('Upload a volume')}>
       <div className={styles.stack}>
         <DropZone
-          label="New volume"
-          folder="A folder with the slices of one DICOM series"
-          files="A zip of one DICOM series, or a NIfTI, NRRD or .tvol file"
-          choose="Choose file"
+          label={say('New volume')}
+          folder={say('A folder with the slices of one DICOM series')}
+          files={say('A zip of one DICOM series, or a NIfTI, NRRD or .tvol file')}
+          choose={say('Choose file')}
           busy={sent.isPending ? phase : null}
           onFiles={(dropped) => {
             setFiles(dropped);
@@ -51,37 +56,43 @@ function Upload() {
           }}
         >
           {files.length === 0
-            ? 'Drop a CT here: a folder or a zip of one DICOM series, or a file in NIfTI (.nii, .nii.gz), NRRD or .tvol, zipped or not.'
-            : `${formatCount(files.length)} ${files.length === 1 ? 'file' : 'files'}, ${formatBytes(size)}`}
+            ? say(
+                'Drop a CT here: a folder or a zip of one DICOM series, or a file in NIfTI (.nii, .nii.gz), NRRD or .tvol, zipped or not.',
+              )
+            : say('{count, plural, one {# file} other {# files}}, {size}', {
+                count: files.length,
+                size: formatBytes(size),
+              })}
         </DropZone>
-        {sent.isPending && gone !== null ? <Progress done={gone} of={1} label="Upload" /> : null}
+        {sent.isPending && gone !== null ? <Progress done={gone} of={1} label={say('Upload')} /> : null}
         {files.length > 0 ? (
           <div className={styles.form}>
             <Field
-              label="Name, without a patient’s name"
+              label={say('Name, without a patient’s name')}
               value={name}
               maxLength={200}
               onChange={(event) => setName(event.target.value)}
             />
             <Field
-              label="Origin and licence (optional)"
+              label={say('Origin and licence (optional)')}
               value={source}
               maxLength={400}
               onChange={(event) => setSource(event.target.value)}
             />
             <Button look="solid" disabled={name.trim() === '' || sent.isPending} onClick={() => sent.mutate()}>
-              Upload
+              {say('Upload')}
             </Button>
           </div>
         ) : null}
         {sent.isError ? (
-          <Notice tone="bad" title="The volume was not taken.">
+          <Notice tone="bad" title={say('The volume was not taken.')}>
             {sent.error.message}
           </Notice>
         ) : null}
         <p className={styles.muted}>
-          The server removes what names a patient from the file. A director or administrator then looks at the pictures
-          and releases or refuses the volume.
+          {say(
+            'The server removes what names a patient from the file. A director or administrator then looks at the pictures and releases or refuses the volume.',
+          )}
         </p>
       </div>
     </Card>
@@ -90,45 +101,48 @@ function Upload() {
 
 /** CT volumes of this server. */
 export function VolumesPage() {
-  useTitle('Volumes');
+  useTitle(say('Volumes'));
   const query = useQuery(sourceVolumesQuery);
   return (
     <div className={styles.page}>
       <div>
-        <h1>Volumes</h1>
-        <p className={styles.lead}>CT volumes from which cases are made. A volume is used after its release.</p>
+        <h1>{say('Volumes')}</h1>
+        <p className={styles.lead}>
+          {say('CT volumes from which cases are made. A volume is used after its release.')}
+        </p>
       </div>
       {query.isError ? (
-        <Notice tone="bad" title="The volumes could not be loaded." onRetry={() => void query.refetch()}>
+        <Notice tone="bad" title={say('The volumes could not be loaded.')} onRetry={() => void query.refetch()}>
           {query.error.message}
         </Notice>
       ) : null}
-      <Card title="Volumes">
+      <Card title={say('Volumes')}>
         <DataTable<SourceVolume>
           address=""
-          caption="Volumes"
+          caption={say('Volumes')}
           minWidth={640}
           rows={query.data?.volumes}
           keyOf={({ id }) => id}
-          empty="No volumes yet. Upload the first below."
-          filter={{ label: 'Filter by name or source', text: (one) => `${one.name} ${one.source}` }}
+          empty={say('No volumes yet. Upload the first below.')}
+          filter={{ label: say('Filter by name or source'), text: (one) => `${one.name} ${one.source}` }}
           columns={[
             {
-              name: 'Volume',
+              name: marked('Volume'),
               by: ({ name }) => name,
               cell: ({ id, name }) => <Link href={`/volumes/${id}`}>{name}</Link>,
             },
             {
-              name: 'State',
+              name: marked('State'),
               by: ({ state }) => state,
-              cell: ({ state }) => <Badge tone={kTones[state]}>{kStates[state]}</Badge>,
+              cell: ({ state }) => <Badge tone={kTones[state]}>{say(kStates[state])}</Badge>,
             },
-            { name: 'Source', by: ({ source }) => source, cell: ({ source }) => source },
-            { name: 'Voxels', cell: ({ dims }) => dims.map(formatCount).join(' × '), number: true },
+            { name: marked('Source'), by: ({ source }) => source, cell: ({ source }) => source },
+            { name: marked('Voxels'), cell: ({ dims }) => dims.map(formatCount).join(' × '), number: true },
             {
-              name: 'Uploaded',
+              name: marked('Uploaded'),
               by: ({ made_utc_us }) => made_utc_us,
-              cell: ({ made_utc_us, made_by }) => `${formatDateTime(made_utc_us)} by ${made_by}`,
+              cell: ({ made_utc_us, made_by }) =>
+                say('{date} by {name}', { date: formatDateTime(made_utc_us), name: made_by }),
             },
           ]}
         />
