@@ -1,6 +1,8 @@
 import { useId, useState } from 'react';
 import type { ScenarioCheck, ScenarioFile } from '@/api';
+import { say } from '@/language';
 import { Button } from '@/ui';
+import { formatCount } from '@/units';
 import {
   fromShown,
   inMillimetres,
@@ -28,11 +30,11 @@ function Number_({ knob, file, check, onFile }: Props & { readonly knob: Knob })
   const text = typed ?? (typeof value === 'number' ? shown(value, knob) : '');
   const none = text.trim() === '' || !Number.isFinite(Number(text));
   const refused = check && !check.ok && check.field === knob.pointer ? inUnitsOf(check.error, knob) : '';
-  const wrong = none ? 'Enter a number.' : refused;
+  const wrong = none ? say('Enter a number.') : refused;
   return (
     <div className={styles.knob}>
       <label htmlFor={id}>
-        {knob.label}
+        {say(knob.label)}
         {knob.unit === '' ? '' : <span className={styles.unit}>, {knob.unit}</span>}
       </label>
       <input
@@ -52,7 +54,7 @@ function Number_({ knob, file, check, onFile }: Props & { readonly knob: Knob })
         }}
       />
       <p id={`${id}-description`} className={wrong === '' ? styles.means : styles.wrong}>
-        {wrong === '' ? knob.description : wrong}
+        {wrong === '' ? say(knob.description) : wrong}
       </p>
     </div>
   );
@@ -83,24 +85,24 @@ export function Walls(props: Props) {
             knob={{
               ...kDepth,
               pointer: `/walls_m/${i}`,
-              label: `Wall ${i + 1} at depth`,
-              description: 'depth of the breach',
+              label: say('Wall {number} at depth', { number: formatCount(i + 1) }),
+              description: say('depth of the breach'),
             }}
           />
           <Button
             look="quiet"
-            label={`Remove wall ${i + 1}`}
+            label={say('Remove wall {number}', { number: formatCount(i + 1) })}
             onClick={() => onFile({ ...file, walls_m: file.walls_m.filter((__, k) => k !== i) })}
           >
-            Remove
+            {say('Remove')}
           </Button>
         </div>
       ))}
       {all === '' ? null : <p className={styles.wrong}>{inMillimetres(all)}</p>}
-      {file.walls_m.length === 0 ? <p className={styles.means}>No walls: there is no breach.</p> : null}
+      {file.walls_m.length === 0 ? <p className={styles.means}>{say('No walls: there is no breach.')}</p> : null}
       <div>
         <Button onClick={() => onFile(withWall(file))} disabled={file.walls_m.length >= 8}>
-          Add wall
+          {say('Add wall')}
         </Button>
       </div>
     </div>
@@ -118,11 +120,21 @@ export function Layers(props: Props) {
         <div key={i} className={styles.stretch}>
           <Number_
             {...props}
-            knob={{ ...kDepth, pointer: at(i, 'start_m'), label: `Region ${i + 1} from`, description: 'depth' }}
+            knob={{
+              ...kDepth,
+              pointer: at(i, 'start_m'),
+              label: say('Region {number} from', { number: formatCount(i + 1) }),
+              description: say('depth'),
+            }}
           />
           <Number_
             {...props}
-            knob={{ ...kDepth, pointer: at(i, 'thickness_m'), label: 'thickness', description: 'along the depth' }}
+            knob={{
+              ...kDepth,
+              pointer: at(i, 'thickness_m'),
+              label: say('thickness'),
+              description: say('along the depth'),
+            }}
           />
           <Number_
             {...props}
@@ -132,24 +144,24 @@ export function Layers(props: Props) {
               step: 0.1,
               symbol: '',
               pointer: at(i, 'density'),
-              label: 'density',
-              description: 'relative to the rest of the bone',
+              label: say('density'),
+              description: say('relative to the rest of the bone'),
             }}
           />
           <Button
             look="quiet"
-            label={`Remove region ${i + 1}`}
+            label={say('Remove region {number}', { number: formatCount(i + 1) })}
             onClick={() => onFile({ ...file, layers: file.layers.filter((__, k) => k !== i) })}
           >
-            Remove
+            {say('Remove')}
           </Button>
         </div>
       ))}
       {all === '' ? null : <p className={styles.wrong}>{inMillimetres(all)}</p>}
-      {file.layers.length === 0 ? <p className={styles.means}>The density is the same everywhere.</p> : null}
+      {file.layers.length === 0 ? <p className={styles.means}>{say('The density is the same everywhere.')}</p> : null}
       <div>
         <Button onClick={() => onFile(withLayer(file))} disabled={file.layers.length >= 12 || withLayer(file) === file}>
-          Add region
+          {say('Add region')}
         </Button>
       </div>
     </div>

@@ -1,6 +1,7 @@
 import type { ScenarioCheck } from '@/api';
 import { curve, Plane } from '@/charts';
-import { formatForce, kSpeed, newton, withUnit } from '@/units';
+import { say } from '@/language';
+import { formatCount, formatForce, kSpeed, newton, withUnit } from '@/units';
 import styles from './scenarios.module.css';
 
 const kSurgeon_N = 150;
@@ -20,15 +21,24 @@ export function Resistance({
   return (
     <div className={styles.resistance} data-part="resistance" data-late={late || undefined}>
       <Plane
-        across={{ title: 'tip depth, mm', from: 0, to: end }}
-        up={{ title: 'required force, N', from: 0, to: top }}
+        across={{ title: say('tip depth, mm'), from: 0, to: end }}
+        up={{ title: say('required force, N'), from: 0, to: top }}
         height_px={340}
         data={{
           name: 'resistance',
           columns: ['depth_m', ...found.at.map(({ speed_m_s }) => `force_N_at_${speed_m_s}_m_s`)],
           rows: found.depth_m.map((depth_m, row) => [depth_m, ...found.at.map(({ force_N }) => force_N[row] ?? null)]),
         }}
-        summary={`Required force over depth at ${found.at.length} speeds, up to ${formatForce(newton(peak))}; ${found.walls.length === 0 ? 'no wall' : `walls at ${found.walls.map(({ at_m }) => `${Math.round(at_m * 1e4) / 10} mm`).join(', ')}`}.`}
+        summary={say('Required force over depth at {count} speeds, up to {force}; {walls}.', {
+          count: formatCount(found.at.length),
+          force: formatForce(newton(peak)),
+          walls:
+            found.walls.length === 0
+              ? say('no wall')
+              : say('walls at {depths}', {
+                  depths: found.walls.map(({ at_m }) => `${Math.round(at_m * 1e4) / 10} mm`).join(', '),
+                }),
+        })}
       >
         {(places) => (
           <g>
@@ -70,7 +80,7 @@ export function Resistance({
               y2={places.y(kSurgeon_N)}
             />
             <text className={styles.note} x={places.x(0) + 6} y={places.y(kSurgeon_N) - 5}>
-              typical force of a surgeon
+              {say('typical force of a surgeon')}
             </text>
             {found.at.map(({ speed_m_s, force_N }, k) => (
               <path
@@ -89,11 +99,11 @@ export function Resistance({
       <ul className={styles.legend}>
         {found.at.map(({ speed_m_s }, k) => (
           <li key={speed_m_s} data-speed={k}>
-            at {withUnit(speed_m_s, kSpeed, 0)}
+            {say('at {speed}', { speed: withUnit(speed_m_s, kSpeed, 0) })}
           </li>
         ))}
-        <li data-band="before">increasing resistance</li>
-        <li data-band="behind">soft tissue behind a wall</li>
+        <li data-band="before">{say('increasing resistance')}</li>
+        <li data-band="behind">{say('soft tissue behind a wall')}</li>
       </ul>
     </div>
   );

@@ -10,12 +10,13 @@ import {
   scenariosQuery,
   type ScenarioFile,
 } from '@/api';
+import { say } from '@/language';
 import { Button, Card, Field, Notice, Select, Skeleton, useTitle, useSettled } from '@/ui';
 import { draftOf, inMillimetres, kBone, kBreach } from './draft';
 import { Knobs, Layers, Walls } from './fields';
 import { Resistance } from './resistance';
 import styles from './scenarios.module.css';
-import { kKindLabels } from './labels';
+import { kindLabel } from './labels';
 
 interface History {
   readonly file: ScenarioFile;
@@ -54,20 +55,21 @@ function SaveForm({
   return (
     <form className={styles.keep} onSubmit={submit}>
       {saved.isError ? (
-        <Notice tone="bad" title="The version was not saved.">
+        <Notice tone="bad" title={say('The version was not saved.')}>
           {saved.error.message}
         </Notice>
       ) : null}
       <p className={styles.means}>
-        Saved versions cannot be changed, so that earlier trials stay comparable. Your changes are saved as a new
-        version under your name.
+        {say(
+          'Saved versions cannot be changed, so that earlier trials stay comparable. Your changes are saved as a new version under your name.',
+        )}
       </p>
       <div className={styles.buttons}>
         <Button onClick={() => saved.mutate(false)} disabled={!ready || saved.isPending}>
-          Save
+          {say('Save')}
         </Button>
         <Button look="solid" type="submit" disabled={!ready || saved.isPending}>
-          Save and publish
+          {say('Save and publish')}
         </Button>
       </div>
     </form>
@@ -90,16 +92,16 @@ function Bench({ start, parent }: { readonly start: ScenarioFile; readonly paren
     <div className={styles.bench}>
       <div className={styles.stack}>
         <Card
-          title="Resistance over depth"
+          title={say('Resistance over depth')}
           aside={
             <Button onClick={() => go('undo')} disabled={past.length === 0}>
-              Undo
+              {say('Undo')}
             </Button>
           }
         >
           <div className={styles.stack}>
             {check.isError ? (
-              <Notice tone="bad" title="The scenario could not be checked." onRetry={() => void check.refetch()}>
+              <Notice tone="bad" title={say('The scenario could not be checked.')} onRetry={() => void check.refetch()}>
                 {check.error.message}
               </Notice>
             ) : null}
@@ -108,13 +110,13 @@ function Bench({ start, parent }: { readonly start: ScenarioFile; readonly paren
                 <Resistance found={curve} late={late || !found?.curve} />
                 {found && !found.curve ? (
                   <p className={styles.warn} role="status">
-                    The curve shows the last valid values. Correct the marked value.
+                    {say('The curve shows the last valid values. Correct the marked value.')}
                   </p>
                 ) : null}
               </>
             ) : (
               <div className={styles.blank}>
-                {found ? <p>Correct the marked value to see the curve.</p> : <Skeleton height="340px" />}
+                {found ? <p>{say('Correct the marked value to see the curve.')}</p> : <Skeleton height="340px" />}
               </div>
             )}
             <div className={styles.says} role="status">
@@ -125,25 +127,25 @@ function Bench({ start, parent }: { readonly start: ScenarioFile; readonly paren
               ))}
               {unplaced === '' ? null : <p className={styles.wrong}>{inMillimetres(unplaced)}</p>}
               {found?.ok && found.excessive.length === 0 ? (
-                <p className={styles.means}>Forces are within the limits of surgeon and actuator.</p>
+                <p className={styles.means}>{say('Forces are within the limits of surgeon and actuator.')}</p>
               ) : null}
             </div>
           </div>
         </Card>
-        <Card title="Save">
+        <Card title={say('Save')}>
           <div className={styles.stack}>
             <div className={styles.knobs}>
               <Field
-                label="Name (not shown to trainees)"
+                label={say('Name (not shown to trainees)')}
                 value={file.name}
                 required
                 maxLength={200}
                 onChange={(event) => go({ ...file, name: event.target.value })}
               />
               <Select
-                label="Kind"
+                label={say('Kind')}
                 value={file.kind}
-                options={kKinds.map((kind) => ({ value: kind, text: kKindLabels[kind] }))}
+                options={kKinds.map((kind) => ({ value: kind, text: kindLabel(kind) }))}
                 onChange={(event) => {
                   const to = kKinds.find((kind) => kind === event.target.value);
                   if (to) go({ ...file, kind: to });
@@ -155,16 +157,16 @@ function Bench({ start, parent }: { readonly start: ScenarioFile; readonly paren
         </Card>
       </div>
       <div className={styles.stack}>
-        <Card title="Bone">
+        <Card title={say('Bone')}>
           <Knobs knobs={kBone} {...props} />
         </Card>
-        <Card title="Walls">
+        <Card title={say('Walls')}>
           <div className={styles.stack}>
             <Walls {...props} />
             {file.walls_m.length > 0 ? <Knobs knobs={kBreach} {...props} /> : null}
           </div>
         </Card>
-        <Card title="Regions of different density">
+        <Card title={say('Regions of different density')}>
           <Layers {...props} />
         </Card>
       </div>
@@ -176,16 +178,16 @@ function Bench({ start, parent }: { readonly start: ScenarioFile; readonly paren
 export function ScenarioPage({ id }: { readonly id: string }) {
   const query = useQuery(scenarioFileQuery(id));
   const missing = query.error instanceof ApiError && query.error.code === 'not_found';
-  useTitle(query.data ? `Scenario ${query.data.name}` : 'Scenario');
+  useTitle(query.data ? say('Scenario {name}', { name: query.data.name }) : say('Scenario'));
   return (
     <div className={styles.page}>
       <p>
-        <Link href="/scenarios">← Scenarios</Link>
+        <Link href="/scenarios">← {say('Scenarios')}</Link>
       </p>
       {query.isError ? (
         <Notice
           tone={missing ? 'warn' : 'bad'}
-          title={missing ? 'Scenario not found.' : 'The scenario could not be loaded.'}
+          title={missing ? say('Scenario not found.') : say('The scenario could not be loaded.')}
           onRetry={missing ? undefined : () => void query.refetch()}
         >
           {query.error.message}
@@ -193,13 +195,13 @@ export function ScenarioPage({ id }: { readonly id: string }) {
       ) : null}
       {query.isPending ? (
         <div role="status">
-          <span className="hidden-visually">Loading the scenario</span>
+          <span className="hidden-visually">{say('Loading the scenario')}</span>
           <Skeleton height="640px" />
         </div>
       ) : null}
       {query.data ? (
         <>
-          <h1>New version of {query.data.name}</h1>
+          <h1>{say('New version of {title}', { title: query.data.name })}</h1>
           <Bench start={query.data} parent={id} />
         </>
       ) : null}

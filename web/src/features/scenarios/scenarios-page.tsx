@@ -1,14 +1,15 @@
 import { useMutation, useQuery, useQueryClient } from '@tanstack/react-query';
 import { Link } from 'wouter';
 import { publishScenario, scenariosQuery, type ScenarioVersion } from '@/api';
+import { marked, say } from '@/language';
 import { Badge, Button, Card, DataTable, Notice, Table, useTitle } from '@/ui';
 import { formatDateTime } from '@/units';
 import styles from './scenarios.module.css';
-import { kKindLabels } from './labels';
+import { kindLabel } from './labels';
 
 /** Scenarios of the probing rig: built-in ones and saved versions. */
 export function ScenariosPage() {
-  useTitle('Scenarios');
+  useTitle(say('Scenarios'));
   const client = useQueryClient();
   const query = useQuery(scenariosQuery);
   const published = useMutation({
@@ -20,71 +21,73 @@ export function ScenariosPage() {
   );
   if (query.isError)
     return (
-      <Notice tone="bad" title="The scenarios could not be loaded." onRetry={() => void query.refetch()}>
+      <Notice tone="bad" title={say('The scenarios could not be loaded.')} onRetry={() => void query.refetch()}>
         {query.error.message}
       </Notice>
     );
   return (
     <div className={styles.page}>
       <div>
-        <h1>Scenarios</h1>
+        <h1>{say('Scenarios')}</h1>
         <p className={styles.lead}>
-          Bone models of the probing rig: layers of bone, walls that are breached, and soft tissue behind them. Start
-          from a built-in scenario or a saved version. Only published versions can be assigned.
+          {say(
+            'Bone models of the probing rig: layers of bone, walls that are breached, and soft tissue behind them. Start from a built-in scenario or a saved version. Only published versions can be assigned.',
+          )}
         </p>
       </div>
-      <Card title="Built-in scenarios">
+      <Card title={say('Built-in scenarios')}>
         <Table
-          caption="Built-in scenarios"
+          caption={say('Built-in scenarios')}
           rows={query.data?.tuned}
           keyOf={({ kind }) => kind}
           empty=""
           columns={[
-            { name: 'Scenario', cell: ({ kind, name }) => <Link href={`/scenarios/${kind}`}>{name}</Link> },
-            { name: 'Kind', cell: ({ kind }) => kKindLabels[kind] },
+            { name: marked('Scenario'), cell: ({ kind, name }) => <Link href={`/scenarios/${kind}`}>{name}</Link> },
+            { name: marked('Kind'), cell: ({ kind }) => kindLabel(kind) },
           ]}
         />
       </Card>
-      <Card title="Saved versions">
+      <Card title={say('Saved versions')}>
         <div className={styles.stack}>
           <DataTable<ScenarioVersion>
             address=""
-            caption="Versions"
+            caption={say('Versions')}
             minWidth={640}
             rows={query.data?.scenarios}
             keyOf={({ id }) => id}
-            empty="No saved versions yet."
+            empty={say('No saved versions yet.')}
             columns={[
               {
-                name: 'Scenario',
+                name: marked('Scenario'),
                 by: (one) => one.name,
                 cell: (one) => <Link href={`/scenarios/${one.id}`}>{one.name}</Link>,
               },
-              { name: 'Kind', by: ({ kind }) => kKindLabels[kind], cell: ({ kind }) => kKindLabels[kind] },
+              { name: marked('Kind'), by: ({ kind }) => kindLabel(kind), cell: ({ kind }) => kindLabel(kind) },
               {
-                name: 'Created',
+                name: marked('Created'),
                 by: (one) => one.made_utc_us,
-                cell: (one) => `${formatDateTime(one.made_utc_us)} by ${one.made_by}`,
+                cell: (one) => say('{date} by {name}', { date: formatDateTime(one.made_utc_us), name: one.made_by }),
               },
               {
-                name: 'Based on',
+                name: marked('Based on'),
                 cell: (one) => (one.parent === null ? '–' : (names.get(one.parent) ?? one.parent.slice(0, 12))),
               },
               {
-                name: 'State',
+                name: marked('State'),
                 by: (one) => one.published,
-                cell: (one) => (one.published ? <Badge tone="good">published</Badge> : <Badge>not published</Badge>),
+                cell: (one) =>
+                  one.published ? <Badge tone="good">{say('published')}</Badge> : <Badge>{say('not published')}</Badge>,
               },
               {
-                name: <span className="hidden-visually">Actions</span>,
+                name: <span className="hidden-visually">{say('Actions')}</span>,
                 cell: (one) => (
                   <Button
                     look="quiet"
                     disabled={published.isPending}
-                    label={`${one.published ? 'Unpublish' : 'Publish'}: ${one.name}`}
+                    label={`${one.published ? say('Unpublish') : say('Publish')}: ${one.name}`}
                     onClick={() => published.mutate({ one, to: !one.published })}
                   >
-                    {one.published ? 'Unpublish' : 'Publish'}
+                    {one.published ? say('Unpublish') : say('Publish')}
                   </Button>
                 ),
               },
@@ -93,19 +96,20 @@ export function ScenariosPage() {
           <p className={styles.message} role="status">
             {published.isSuccess ? (
               <>
-                {published.variables.one.name} is{' '}
                 {published.variables.to
-                  ? 'published and can be assigned.'
-                  : 'unpublished; existing assignments continue.'}{' '}
+                  ? say('{name} is published and can be assigned.', { name: published.variables.one.name })
+                  : say('{name} is unpublished; existing assignments continue.', {
+                      name: published.variables.one.name,
+                    })}{' '}
                 <Button
                   look="quiet"
                   onClick={() => published.mutate({ one: published.variables.one, to: !published.variables.to })}
                 >
-                  Undo
+                  {say('Undo')}
                 </Button>
               </>
             ) : null}
-            {published.isError ? `The action failed: ${published.error.message}` : null}
+            {published.isError ? say('The action failed: {why}', { why: published.error.message }) : null}
           </p>
         </div>
       </Card>
