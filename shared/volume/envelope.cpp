@@ -1,23 +1,23 @@
 #include "volume/envelope.hpp"
 
 #include <fmt/format.h>
+#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
+#include <limits>
+#include <span>
 #include <vector>
 
 #include "core/try.hpp"
+#include "volume/cortex.hpp"
+#include "volume/ray_fan.hpp"
 
 namespace tractus {
 namespace volume {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-constexpr int kAround = 32;             // rays about the axis
-constexpr int kPolar = 10;              // rows of rays of each hemisphere
-constexpr double kAlongStep_m = 0.001;  // between the rows of rays along the tract
 constexpr double kRadialStep_m = 0.0005;
 constexpr int kRadial = int(Envelope::kReach_m / kRadialStep_m) + 1;
 constexpr double kFaceWidth_m = 0.0015;  // w, at least
@@ -30,59 +30,21 @@ constexpr double kNoFace_m = 0.021;                 // a face beyond it is none
 constexpr int kAside = 2;                           // rays to each side of a wall's direction
 constexpr double kMostOpen = 0.15;                  // of them without a face
 constexpr double kThickestSlice_m = 0.0035;
-constexpr double kMetal = 2500.0, kNearMetal_m = 0.006;     // cortex stays under 2000 HU
-constexpr double kRing_m = 0.014;                           // faces of a pedicle lie within it
-constexpr int kShortestRing = 4;                            // rows
+constexpr double kMetal = 2500.0, kNearMetal_m = 0.006;  // cortex stays under 2000 HU
+constexpr double kRing_m = 0.014;                        // faces of a pedicle lie within it
+constexpr int kShortestRing = 4;                         // rows
+constexpr float kForbidden = 50.0f;   // cost of a face where a mark says that none is
+constexpr std::size_t kBlurFrom = 8;  // rays, from which the blur is measured
+constexpr double kProfileFrom_m = -0.005, kProfileTo_m = 0.0025;  // of a cortex, about its face
+constexpr double kThinnestCortex_m = 0.0003;                // [Treece2010] is unbiased down to it
 constexpr double kCanal_m = 0.006, kContrastAgent = 150.0;  // beyond a medial face lies the canal
 
 core::Error refusal(std::string why) { return {core::Errc::out_of_range, std::move(why)}; }
 
-/// The fan of rays that leaves a tract: rows along it with a hemisphere at each end.
-class Fan {
- public:
-  explicit Fan(const Tract& tract)
-      : tract_(tract), along_(1 + std::max(1, int(std::lround(tract.length_m / kAlongStep_m)))) {}
-
-  int rows() const { return along_ + 2 * kPolar; }
-  Vec3 foot(int row) const {
-    const double share = std::clamp(double(row - kPolar) / (along_ - 1), 0.0, 1.0);
-    return tract_.entry_m + share * tract_.length_m * tract_.axis;
-  }
-  Vec3 direction(int row, int turn) const {
-    const double lift = lift_rad(row), angle = 2.0 * kPi * turn / kAround;
-    const Vec3 out = std::cos(angle) * tract_.medial + std::sin(angle) * tract_.superior;
-    return std::cos(lift) * out + std::sin(lift) * tract_.axis;
-  }
-  /// Row, turn (both continuous) and distance from the tract of a point.
-  struct Place {
-    double row, turn, distance_m;
-  };
-  Place place_of(const Vec3& p) const {
-    const double depth = tract_.depth_of(p);
-    const math::Vec2 off = tract_.offset_of(p);
-    const double inside = std::clamp(depth, 0.0, tract_.length_m), over = depth - inside;
-    const double lift = std::atan2(over, off.norm()) / (kPi / 2.0);  // −1 … 1
-    const double row = kPolar + inside / tract_.length_m * (along_ - 1) + lift * kPolar;
-    double turn = std::atan2(off.y(), off.x()) / (2.0 * kPi) * kAround;
-    if (turn < 0.0) turn += kAround;
-    return {row, turn, std::hypot(over, off.norm())};
-  }
-  bool beside(int row) const { return row >= kPolar && row < kPolar + along_; }
-  double depth_m(int row) const { return double(row - kPolar) / (along_ - 1) * tract_.length_m; }
-
- private:
-  double lift_rad(int row) const {
-    const int over = row < kPolar ? row - kPolar : std::max(0, row - (kPolar + along_ - 1));
-    return double(over) / kPolar * kPi / 2.0;
-  }
-  Tract tract_;
-  int along_;
-};
-
 using Costs = std::vector<float>;  // [row][turn][radius]
 
 std::size_t column(int row, int turn) {
-  return (std::size_t(row) * kAround + std::size_t(turn)) * std::size_t(kRadial);
+  return (std::size_t(row) * Fan::kRays + std::size_t(turn)) * std::size_t(kRadial);
 }
 
 /// Costs of a face along one ray.
@@ -102,6 +64,25 @@ void ray_costs(const Volume& ct, const Vec3& foot, const Vec3& direction, double
     const float edge = float((within - beyond) / w / kContrast);
     cost[r] = r + 1 == kRadial ? kNoFace + passed : passed - edge;
     passed += kFaceBehind * std::max(0.0f, edge - kFaint) / float(w);
+  }
+}
+
+/// Where a ray runs through a mark there is no face: of bone, none nearer than its far end; of no
+/// bone, none beyond its near end.
+void heed_marks(std::span<const EnvelopeMark> marks, const Vec3& foot, const Vec3& direction,
+                float* cost) {
+  for (const EnvelopeMark& mark : marks) {
+    const Vec3 to = mark.at_m - foot;
+    const double along_m = to.dot(direction),
+                 half2 = mark.radius_m * mark.radius_m - (to.squaredNorm() - along_m * along_m);
+    if (half2 <= 0.0 || along_m <= 0.0) continue;
+    const double half_m = std::sqrt(half2);
+    const int near = std::clamp(int((along_m - half_m) / kRadialStep_m), 0, kRadial - 1),
+              far = std::clamp(int((along_m + half_m) / kRadialStep_m) + 1, 0, kRadial - 1);
+    if (mark.bone)
+      for (int r = 0; r < far; ++r) cost[r] += kForbidden;
+    else
+      for (int r = near + 1; r < kRadial; ++r) cost[r] += kForbidden;
   }
 }
 
@@ -128,38 +109,62 @@ Costs path_sums(const Costs& costs, int rows) {
       path_step(&costs[at], before, k < quiet ? scratch.data() : &sums[at]);
     }
   };
-  for (int turn = 0; turn < kAround; ++turn) {
+  for (int turn = 0; turn < Fan::kRays; ++turn) {
     run(rows, 0, [&](int k) { return column(k, turn); });
     run(rows, 0, [&](int k) { return column(rows - 1 - k, turn); });
   }
   for (int row = 0; row < rows; ++row) {
-    run(2 * kAround, kAround, [&](int k) { return column(row, k % kAround); });
-    run(2 * kAround, kAround, [&](int k) { return column(row, kAround - 1 - k % kAround); });
+    run(2 * Fan::kRays, Fan::kRays, [&](int k) { return column(row, k % Fan::kRays); });
+    run(2 * Fan::kRays, Fan::kRays,
+        [&](int k) { return column(row, Fan::kRays - 1 - k % Fan::kRays); });
   }
   return sums;
 }
 
-class FoundEnvelope final : public Envelope {
+/// A number for each ray; between rays bilinear.
+class PerRay {
  public:
-  FoundEnvelope(const Fan& fan, std::vector<double> face_m, double voxel_m)
-      : Envelope(voxel_m), fan_(fan), face_m_(std::move(face_m)) {}
-
-  double inside_m(const Vec3& p) const noexcept override {
-    const Fan::Place place = fan_.place_of(p);
-    if (place.distance_m >= kReach_m) return -kReach_m;
-    const int row = std::clamp(int(place.row), 0, fan_.rows() - 2), turn = int(place.turn);
-    const double a = place.row - row, b = place.turn - turn;
-    const double face = (1 - a) * ((1 - b) * at(row, turn) + b * at(row, turn + 1)) +
-                        a * ((1 - b) * at(row + 1, turn) + b * at(row + 1, turn + 1));
-    return face - place.distance_m;
-  }
+  PerRay(int rows, std::vector<double> values) : rows_(rows), values_(std::move(values)) {}
   double at(int row, int turn) const {
-    return face_m_[std::size_t(row) * kAround + std::size_t(turn % kAround)];
+    return values_[std::size_t(row) * Fan::kRays + std::size_t(turn % Fan::kRays)];
+  }
+  double near(const Fan::Place& place) const {
+    const int row = std::clamp(int(place.row), 0, rows_ - 2), turn = int(place.turn);
+    const double a = place.row - row, b = place.turn - turn;
+    return (1 - a) * ((1 - b) * at(row, turn) + b * at(row, turn + 1)) +
+           a * ((1 - b) * at(row + 1, turn) + b * at(row + 1, turn + 1));
   }
 
  private:
+  int rows_;
+  std::vector<double> values_;  // [row][turn]
+};
+
+OuterFace outer_face_of(const Fan& fan, const PerRay& face_m) {
+  OuterFace out{.around = Fan::kRays, .points_m = {}};
+  for (int row = 0; row < fan.rows(); ++row)
+    for (int turn = 0; turn < Fan::kRays; ++turn)
+      out.points_m.push_back(fan.foot(row) + face_m.at(row, turn) * fan.direction(row, turn));
+  return out;
+}
+
+class FoundEnvelope final : public Envelope {
+ public:
+  FoundEnvelope(const Fan& fan, PerRay face_m, PerRay cortex_m, double voxel_m)
+      : Envelope(voxel_m), fan_(fan), face_m_(std::move(face_m)), cortex_m_(std::move(cortex_m)) {}
+
+  double inside_m(const Vec3& p) const noexcept override { return depth(p).inside_m; }
+  Depth depth(const Vec3& p) const noexcept override {
+    if (fan_.distance_m(p) >= kReach_m) return {-kReach_m, kCortex_m};
+    const Fan::Place place = fan_.place_of(p);
+    return {face_m_.near(place) - place.distance_m, cortex_m_.near(place)};
+  }
+  OuterFace outer_face() const override { return outer_face_of(fan_, face_m_); }
+  double at(int row, int turn) const { return face_m_.at(row, turn); }
+
+ private:
   Fan fan_;
-  std::vector<double> face_m_;  // [row][turn]
+  PerRay face_m_, cortex_m_;
 };
 
 /// Rows along the tract whose faces all lie as near as a pedicle's.
@@ -167,7 +172,7 @@ std::vector<int> ring_rows(const Fan& fan, const FoundEnvelope& envelope) {
   std::vector<int> out;
   for (int row = 0; row < fan.rows(); ++row) {
     double farthest_m = fan.beside(row) ? 0.0 : kRing_m;
-    for (int turn = 0; turn < kAround; ++turn)
+    for (int turn = 0; turn < Fan::kRays; ++turn)
       farthest_m = std::max(farthest_m, envelope.at(row, turn));
     if (farthest_m < kRing_m) out.push_back(row);
   }
@@ -176,8 +181,8 @@ std::vector<int> ring_rows(const Fan& fan, const FoundEnvelope& envelope) {
 
 core::Result<void> check_metal(const Volume& ct, const Fan& fan) {
   for (int row = 0; row < fan.rows(); ++row)
-    for (int turn = 0; turn < kAround; turn += 4)
-      for (double r = 0.0; r <= kNearMetal_m; r += kAlongStep_m)
+    for (int turn = 0; turn < Fan::kRays; turn += 4)
+      for (double r = 0.0; r <= kNearMetal_m; r += Fan::kRowStep_m)
         if (const Vec3 p = fan.foot(row) + r * fan.direction(row, turn); ct.value_at(p) > kMetal)
           return refusal(
               fmt::format("metal lies {:.0f} mm from the tract ({:.0f} HU): a screw or "
@@ -208,8 +213,8 @@ core::Result<void> check_ring(const Volume& ct, const Fan& fan, const FoundEnvel
 /// facet of one goes on. To medial its body may be wider than that.
 core::Result<void> check_leak(const Fan& fan, const FoundEnvelope& envelope) {
   for (const auto& [side, middle] :
-       {std::pair("superior", kAround / 4), std::pair("lateral", kAround / 2),
-        std::pair("inferior", 3 * kAround / 4)}) {
+       {std::pair("superior", Fan::kRays / 4), std::pair("lateral", Fan::kRays / 2),
+        std::pair("inferior", 3 * Fan::kRays / 4)}) {
     int open = 0, rays = 0;
     for (int row = 0; row < fan.rows(); ++row)
       for (int turn = middle - kAside; fan.beside(row) && turn <= middle + kAside; ++turn)
@@ -238,50 +243,109 @@ class LabelEnvelope final : public Envelope {
   double voxel_m_;
 };
 
-/// The median of each face and its eight neighbours.
-std::vector<double> smoothed(const std::vector<double>& face, int rows) {
-  std::vector<double> out(face.size());
+/// The median of each ray's value and its eight neighbours', of those that have one.
+std::vector<double> smoothed(const std::vector<double>& values, int rows) {
+  std::vector<double> out(values.size());
   for (int row = 0; row < rows; ++row)
-    for (int turn = 0; turn < kAround; ++turn) {
+    for (int turn = 0; turn < Fan::kRays; ++turn) {
       std::array<double, 9> near{};
+      std::ptrdiff_t count = 0;
       for (int n = 0; n < 9; ++n) {
         const int r = std::clamp(row + n / 3 - 1, 0, rows - 1);
-        const int t = (turn + n % 3 - 1 + kAround) % kAround;
-        near[std::size_t(n)] = face[std::size_t(r) * kAround + std::size_t(t)];
+        const int t = (turn + n % 3 - 1 + Fan::kRays) % Fan::kRays;
+        const double value = values[std::size_t(r) * Fan::kRays + std::size_t(t)];
+        if (!std::isnan(value)) near[std::size_t(count++)] = value;
       }
-      std::ranges::nth_element(near, near.begin() + 4);
-      out[std::size_t(row) * kAround + std::size_t(turn)] = near[4];
+      double& median = out[std::size_t(row) * Fan::kRays + std::size_t(turn)];
+      median = std::numeric_limits<double>::quiet_NaN();
+      if (count == 0) continue;
+      std::nth_element(near.begin(), near.begin() + count / 2, near.begin() + count);
+      median = near[std::size_t(count / 2)];
     }
   return out;
 }
 
-}  // namespace
-
-core::Result<std::unique_ptr<Envelope>> envelope_about(const Volume& ct, const Tract& tract) {
-  const double coarsest_m = ct.geometry.spacing_m.maxCoeff();
-  if (coarsest_m > kThickestSlice_m)
-    return refusal(
-        fmt::format("the CT's slices are {:.1f} mm thick: the vertebra's outer face is "
-                    "found in slices of at most {:.1f} mm",
-                    coarsest_m * 1e3, kThickestSlice_m * 1e3));
-  const Fan fan(tract);
-  TRY(check_metal(ct, fan));
+std::vector<double> faces_of(const Volume& ct, const Fan& fan,
+                             std::span<const EnvelopeMark> marks) {
   Costs costs(column(fan.rows(), 0));
-  const double width_m = std::max(kFaceWidth_m, 0.8 * coarsest_m);
+  const double width_m = std::max(kFaceWidth_m, 0.8 * ct.geometry.spacing_m.maxCoeff());
   for (int row = 0; row < fan.rows(); ++row)
-    for (int turn = 0; turn < kAround; ++turn)
-      ray_costs(ct, fan.foot(row), fan.direction(row, turn), width_m, &costs[column(row, turn)]);
+    for (int turn = 0; turn < Fan::kRays; ++turn) {
+      float* cost = &costs[column(row, turn)];
+      ray_costs(ct, fan.foot(row), fan.direction(row, turn), width_m, cost);
+      heed_marks(marks, fan.foot(row), fan.direction(row, turn), cost);
+    }
   const Costs sums = path_sums(costs, fan.rows());
-  std::vector<double> face_m;
+  std::vector<double> out;
   for (std::size_t at = 0; at < sums.size(); at += std::size_t(kRadial)) {
     const auto first = sums.begin() + std::ptrdiff_t(at);
-    face_m.push_back(double(std::min_element(first, first + kRadial) - first) * kRadialStep_m);
+    out.push_back(double(std::min_element(first, first + kRadial) - first) * kRadialStep_m);
   }
-  auto found = std::make_unique<FoundEnvelope>(fan, smoothed(face_m, fan.rows()),
-                                               ct.geometry.spacing_m.mean());
+  return smoothed(out, fan.rows());
+}
+
+CortexProfile profile_of(const Volume& ct, const Fan& fan, int row, int turn, double face_m) {
+  CortexProfile out{
+      .from_m = std::max(kProfileFrom_m, -face_m), .step_m = kRadialStep_m, .values = {}};
+  if (face_m >= kNoFace_m) return out;
+  for (double x = out.from_m; x <= kProfileTo_m + 1e-9; x += out.step_m)
+    out.values.push_back(ct.value_at(fan.foot(row) + (face_m + x) * fan.direction(row, turn)));
+  return out;
+}
+
+/// The cortex's thickness on each ray; where the model fits none, its neighbours' or kCortex_m.
+std::vector<double> cortices_of(const Volume& ct, const Fan& fan,
+                                const std::vector<double>& face_m) {
+  std::vector<CortexProfile> profiles, some;
+  for (int row = 0; row < fan.rows(); ++row)
+    for (int turn = 0; turn < Fan::kRays; ++turn) {
+      profiles.push_back(profile_of(ct, fan, row, turn, face_m[profiles.size()]));
+      if (profiles.size() % kBlurFrom == 0 && fan.beside(row) && !profiles.back().values.empty())
+        some.push_back(profiles.back());
+    }
+  std::vector<double> out(face_m.size(), std::numeric_limits<double>::quiet_NaN());
+  const auto scan = cortex_scan_of(some);
+  if (scan)
+    tbb::parallel_for(std::size_t(0), out.size(), [&](std::size_t ray) {
+      if (const auto fit = fit_cortex(profiles[ray], *scan))
+        out[ray] = std::max(kThinnestCortex_m, fit->thickness_m);
+    });
+  out = smoothed(out, fan.rows());
+  std::ranges::replace_if(
+      out, [](double x) { return std::isnan(x); }, Envelope::kCortex_m);
+  return out;
+}
+
+core::Result<void> check_slices(const Volume& ct) {
+  const double coarsest_m = ct.geometry.spacing_m.maxCoeff();
+  if (coarsest_m <= kThickestSlice_m) return {};
+  return refusal(
+      fmt::format("the CT's slices are {:.1f} mm thick: the vertebra's outer face is "
+                  "found in slices of at most {:.1f} mm",
+                  coarsest_m * 1e3, kThickestSlice_m * 1e3));
+}
+
+}  // namespace
+
+core::Result<std::unique_ptr<Envelope>> envelope_about(const Volume& ct, const Tract& tract,
+                                                       std::span<const EnvelopeMark> marks) {
+  TRY(check_slices(ct));
+  const Fan fan(tract);
+  TRY(check_metal(ct, fan));
+  auto face_m = faces_of(ct, fan, marks);
+  PerRay cortex_m(fan.rows(), cortices_of(ct, fan, face_m));
+  auto found = std::make_unique<FoundEnvelope>(fan, PerRay(fan.rows(), std::move(face_m)),
+                                               std::move(cortex_m), ct.geometry.spacing_m.mean());
   TRY(check_ring(ct, fan, *found));
   TRY(check_leak(fan, *found));
   return std::unique_ptr<Envelope>(std::move(found));
+}
+
+core::Result<OuterFace> outer_face_about(const Volume& ct, const Tract& tract,
+                                         std::span<const EnvelopeMark> marks) {
+  TRY(check_slices(ct));
+  const Fan fan(tract);
+  return outer_face_of(fan, PerRay(fan.rows(), faces_of(ct, fan, marks)));
 }
 
 core::Result<std::unique_ptr<Envelope>> envelope_of_labels(const Volume& labels, int label) {

@@ -116,6 +116,77 @@ TEST(EnvelopeAbout, RefusesBoneThatGoesOnBeyondTheVertebra) {
               HasSubstr("to superior"));
 }
 
+/// The same rib, of which a person says that it is none of this vertebra.
+TEST(EnvelopeAbout, IsMendedByMarks) {
+  const auto rib = [](const Vec3& p_m) {
+    const Vec3 p = p_m * 1e3 - Vec3(0, -30, 0);
+    const double off = std::hypot(p.y(), p.z());
+    if (p.x() < 0.0 || off > 14.0) return soft_bone(p_m);
+    return off > 12.8 ? 700.0 : 60.0;
+  };
+  const Volume ct = drawn_soft(rib);
+  EXPECT_FALSE(envelope_about(ct, soft_tract()));
+  std::vector<EnvelopeMark> marks;
+  for (const double y : {-40.0, -34.0, -28.0, -22.0})
+    for (const double z : {-12.0, -6.0, 0.0, 6.0, 12.0})
+      marks.push_back({Vec3(21.0, y, z) * 1e-3, 0.005, false});
+  const auto mended = envelope_about(ct, soft_tract(), marks);
+  ASSERT_TRUE(mended) << mended.error().what;
+  EXPECT_LT((*mended)->inside_m(Vec3(0.018, -0.030, 0.0)), 0.0);
+  EXPECT_GT((*mended)->inside_m(Vec3(0.012, -0.030, 0.0)), 0.0);
+  EXPECT_GT((*mended)->inside_m(Vec3(-0.014, -0.030, 0.0)), 0.0);  // the other side, as before
+}
+
+TEST(EnvelopeAbout, TakesInWhatIsMarkedAsBone) {
+  const auto ct = drawn_soft(soft_bone);
+  const Vec3 beyond(0.009, 0.004, 0.0);  // 3 mm outside the pedicle's face
+  const std::vector<EnvelopeMark> marks{{beyond, 0.003, true}};
+  EXPECT_LT((*envelope_about(ct, soft_tract()))->inside_m(beyond), 0.0);
+  EXPECT_GT((*envelope_about(ct, soft_tract(), marks))->inside_m(beyond), 0.0);
+}
+
+/// Cortex of several thicknesses, drawn in voxels of 1 mm: what blurs it is the voxel itself and what
+/// reads between voxels, of which the model knows nothing.
+TEST(EnvelopeAbout, MeasuresTheCortexOfADrawnVertebra) {
+  for (const double thickness_mm : {0.6, 1.2, 2.0}) {
+    const auto scene = [&](const Vec3& p_m) {
+      const Vec3 p = p_m * 1e3;
+      if (within(p, thickness_mm)) return 60.0;
+      return within(p, 0.0) ? 1200.0 : 50.0;
+    };
+    const auto envelope = envelope_about(drawn_soft(scene), soft_tract());
+    ASSERT_TRUE(envelope) << envelope.error().what;
+    double sum = 0.0, worst = 0.0;
+    int places = 0;
+    for (double y = -8.0; y <= 10.0; y += 1.0)
+      for (double angle = 0.0; angle < 6.28; angle += 0.2) {
+        const Vec3 p = Vec3(3.0 * std::cos(angle), y, 3.0 * std::sin(angle)) * 1e-3;
+        const double off = (*envelope)->depth(p).cortex_m * 1e3 - thickness_mm;
+        sum += off, worst = std::max(worst, std::abs(off)), ++places;
+      }
+    EXPECT_NEAR(sum / places, 0.0, 0.2) << thickness_mm;
+    EXPECT_LT(worst, 0.7) << thickness_mm;
+  }
+}
+
+TEST(OuterFaceAbout, ShowsTheFaceAlsoWhereItIsRefused) {
+  const auto face = outer_face_about(drawn_soft(soft_bone), soft_tract());
+  ASSERT_TRUE(face);
+  ASSERT_GT(face->around, 8);
+  EXPECT_EQ(face->points_m.size() % std::size_t(face->around), 0u);
+  int beside_pedicle = 0;
+  for (const Vec3& p : face->points_m) {
+    if (std::abs(p.y()) > 0.008) continue;
+    EXPECT_NEAR(std::hypot(p.x(), p.z()) * 1e3, kPedicle_mm, 1.0) << p.transpose();
+    ++beside_pedicle;
+  }
+  EXPECT_GT(beside_pedicle, 10 * face->around);
+  Tract beside = soft_tract();
+  beside.entry_m.x() = 0.020;
+  EXPECT_TRUE(outer_face_about(drawn_soft(soft_bone), beside));
+  EXPECT_FALSE(outer_face_about(drawn_soft(soft_bone, 5.0), soft_tract()));
+}
+
 TEST(EnvelopeOfLabels, IsTheLabelsVoxels) {
   Volume labels{.geometry = {{4, 4, 4}, Vec3::Constant(0.001), Vec3::Zero(), Mat3::Identity()},
                 .slope = 1,
@@ -128,6 +199,7 @@ TEST(EnvelopeOfLabels, IsTheLabelsVoxels) {
   EXPECT_NEAR((*envelope)->share(Vec3(0.001, 0.0015, 0.001)), 0.5, 1e-9);
   EXPECT_EQ((*envelope)->share(Vec3(0.003, 0.003, 0.003)), 0.0);
   EXPECT_EQ((*envelope)->share(Vec3(0.1, 0.0, 0.0)), 0.0);
+  EXPECT_EQ((*envelope)->depth(Vec3(0.001, 0.001, 0.001)).cortex_m, Envelope::kCortex_m);
   EXPECT_FALSE(envelope_of_labels(labels, 5));
 }
 

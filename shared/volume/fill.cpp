@@ -1,5 +1,7 @@
 #include "volume/fill.hpp"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 
 #include "volume/resample.hpp"
@@ -8,10 +10,10 @@ namespace tractus {
 namespace volume {
 namespace {
 
-constexpr double kCortex_m = 0.001, kCortexEnds_m = 0.0015;
+constexpr double kCortexEnds_m = 0.0005;  // over which its share falls
 
-double cortex_share(double inside_m) {
-  return std::clamp((kCortexEnds_m - inside_m) / (kCortexEnds_m - kCortex_m), 0.0, 1.0);
+double cortex_share(const Envelope::Depth& depth) {
+  return std::clamp(1.0 - (depth.inside_m - depth.cortex_m) / kCortexEnds_m, 0.0, 1.0);
 }
 
 }  // namespace
@@ -49,16 +51,16 @@ double Filling::filled(double value, double cortex) const noexcept {
 Box Filling::fill(Volume& volume, const Envelope& envelope, const Tract& tract) const {
   const std::array<Vec3, 2> ends{tract.entry_m, tract.end_m()};
   const Box box = box_about(volume.geometry, ends, Envelope::kReach_m);
-  for (int k = box.begin[2]; k < box.end[2]; ++k)
+  tbb::parallel_for(box.begin[2], box.end[2], [&](int k) {
     for (int j = box.begin[1]; j < box.end[1]; ++j)
       for (int i = box.begin[0]; i < box.end[0]; ++i) {
-        const Vec3 p = volume.geometry.position_of(Vec3(i, j, k));
-        const double share = envelope.share(p);
+        const auto depth = envelope.depth(volume.geometry.position_of(Vec3(i, j, k)));
+        const double share = envelope.share_at(depth.inside_m);
         if (share == 0.0) continue;
-        const double before = volume.value(i, j, k),
-                     after = filled(before, cortex_share(envelope.inside_m(p)));
+        const double before = volume.value(i, j, k), after = filled(before, cortex_share(depth));
         volume.counts[volume.offset(i, j, k)] = volume.count_of(before + share * (after - before));
       }
+  });
   return box;
 }
 

@@ -26,9 +26,10 @@ inline constexpr double kLeastOpacity = 0.8;  ///< of what is filled
 ///     v′ = v + s · max(0, f(v) − v),   α(f(v)) = 1 − 0.2 (1 − c) (1 − clamp(v / v₁, 0, 1))
 ///
 /// v₁ is where the transfer function first reaches its greatest opacity; c is the cortex's share: 1
-/// within 1 mm of the outer face, 0 from 1.5 mm on. So cancellous bone keeps its order of density,
-/// the cortex, which most CTs blur to less than its density [Treece2010], is whole again, and the
-/// outer face is as smooth as the envelope.
+/// within its thickness from the outer face (Envelope::depth), 0 from half a millimetre deeper on.
+/// So cancellous bone keeps its order of density, the cortex, which most CTs blur to less than its
+/// density [Treece2010], is whole again as thick as the scan shows it, and the outer face is as
+/// smooth as the envelope.
 class Filling {
  public:
   /// Errors: out_of_range: a transfer function that falls, or whose opacity stays below 1 − 10⁻⁹,
