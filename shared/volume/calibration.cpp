@@ -20,6 +20,8 @@ constexpr double kLeastShare = 0.002;  // of all voxels, in the bins of a peak
 constexpr double kMetalFrom = 2500.0, kMostMetal_m3 = 5e-8;
 constexpr double kThick_m = 0.002, kWeakCortex = 500.0;
 constexpr double kAirFrom = -1060.0, kAirTo = -940.0;  // of a calibrated scan
+constexpr double kAirHU = -1000.0, kFatHU = -100.0, kSoftTissueHU = 50.0;
+constexpr double kMostSlopeOff = 0.3;
 constexpr double kNoAirFrom = -500.0;
 constexpr double kDeep_m = 0.003, kFaceLayer_m = 0.002, kRayStep_m = 0.0005;
 constexpr int kDirections = 16;
@@ -90,10 +92,7 @@ Calibration calibrate(const Histogram& histogram, const Geometry& geometry) {
   const Spectrum spectrum(histogram);
   Calibration out{.air = spectrum.peak(kAir),
                   .fat = spectrum.peak(kFat),
-                  .soft_tissue = spectrum.peak(kSoftTissue),
-                  .cancellous = {},
-                  .cortical = {},
-                  .warnings = {}};
+                  .soft_tissue = spectrum.peak(kSoftTissue)};
   const auto warn = [&](std::string line) { out.warnings.push_back(std::move(line)); };
   if (out.air && (*out.air < kAirFrom || *out.air > kAirTo))
     warn(fmt::format("air measures {:.0f}, not -1000: the values may not be HU", *out.air));
@@ -122,14 +121,40 @@ Calibration calibrate(const Histogram& histogram, const Geometry& geometry) {
   return out;
 }
 
+core::Result<TransferFunction> calibrated(const TransferFunction& transfer,
+                                          const Calibration& calibration) {
+  std::vector<std::pair<double, double>> known;  // HU, and what the scan has there
+  for (const auto& [value, peak] : {std::pair(kAirHU, calibration.air),
+                                    {kFatHU, calibration.fat},
+                                    {kSoftTissueHU, calibration.soft_tissue}})
+    if (peak) known.emplace_back(value, *peak);
+  if (known.size() < 2)
+    return core::Error{
+        core::Errc::out_of_range,
+        "the transfer function cannot be calibrated: of air, fat and soft tissue the "
+        "scan must show two peaks"};
+  const auto &low = known.front(), &high = known.back();
+  const double slope = (high.second - low.second) / (high.first - low.first);
+  if (std::abs(slope - 1.0) > kMostSlopeOff)
+    return core::Error{core::Errc::out_of_range,
+                       fmt::format("the transfer function cannot be calibrated: between its peaks "
+                                   "the scan has {:.2f} units a HU",
+                                   slope)};
+  auto points = transfer.points();
+  for (auto& point : points) point.value = low.second + slope * (point.value - low.first);
+  return TransferFunction::make(std::move(points));
+}
+
 void calibrate_bone(const Volume& ct, const Envelope& envelope, const Tract& tract,
                     Calibration& out) {
-  std::vector<double> deep, cortex;
+  std::vector<double> deep, cortex, thickness_m;
   for (double at = 0.0; at <= tract.length_m; at += kFaceLayer_m)
     for (int turn = 0; turn < kDirections; ++turn) {
       const double angle = 2.0 * std::numbers::pi * turn / kDirections;
       const Vec3 along = std::cos(angle) * tract.medial + std::sin(angle) * tract.superior;
       double most = -1e300, last_inside_m = 1.0;
+      thickness_m.push_back(
+          envelope.depth(tract.entry_m + at * tract.axis + kDeep_m * along).cortex_m);
       for (double r = 0.0; r <= Envelope::kReach_m && last_inside_m >= 0.0; r += kRayStep_m) {
         const Vec3 p = tract.entry_m + at * tract.axis + r * along;
         last_inside_m = envelope.inside_m(p);
@@ -142,6 +167,7 @@ void calibrate_bone(const Volume& ct, const Envelope& envelope, const Tract& tra
   if (!deep.empty()) out.cancellous = median_of(deep);
   if (cortex.empty()) return;
   out.cortical = median_of(cortex);
+  out.cortex_m = median_of(thickness_m);
   if (*out.cortical < kWeakCortex)
     out.warnings.push_back(fmt::format(
         "cortex measures {:.0f}, under {:.0f}: a soft kernel, coarse voxels or porous bone; its "

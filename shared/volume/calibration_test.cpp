@@ -72,6 +72,20 @@ TEST(Calibrate, WarnsOfMetalContrastThickSlicesAndForeignValues) {
   EXPECT_THAT(plain, Not(Contains(HasSubstr("HU"))));
 }
 
+TEST(CalibratedTransfer, FollowsTheLineThroughTheScansPeaks) {
+  // A scan that reads 0.95 of each value and 20 more: 150 → 162.5, 700 → 685, by hand.
+  const Calibration off{.air = -930.0, .fat = -75.0, .soft_tissue = 67.5};
+  const auto moved = calibrated(TransferFunction::bone(), off);
+  ASSERT_TRUE(moved) << moved.error().what;
+  ASSERT_EQ(moved->points().size(), 2u);
+  EXPECT_NEAR(moved->points()[0].value, 162.5, 1e-9);
+  EXPECT_NEAR(moved->points()[1].value, 685.0, 1e-9);
+  EXPECT_EQ(moved->points()[1].opacity, 1.0);
+  EXPECT_FALSE(calibrated(TransferFunction::bone(), Calibration{.air = -1000.0}));
+  EXPECT_FALSE(
+      calibrated(TransferFunction::bone(), Calibration{.fat = -160.0, .soft_tissue = 120.0}));
+}
+
 /// The rod's own outer face.
 class RodEnvelope final : public Envelope {
  public:

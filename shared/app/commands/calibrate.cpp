@@ -40,6 +40,8 @@ void print_calibration(const volume::Calibration& found) {
   line("soft tissue", found.soft_tissue);
   if (found.cancellous) line("cancellous", found.cancellous);
   if (found.cortical) line("cortical", found.cortical);
+  if (found.cortex_m)
+    fmt::print("{:<12} {:.2f} mm thick (median)\n", "cortex", *found.cortex_m * 1e3);
   for (const auto& warning : found.warnings) fmt::print("warning: {}\n", warning);
 }
 
@@ -49,6 +51,7 @@ core::Json calibration_json(const volume::Calibration& found) {
           {"soft_tissue_HU", core::or_null(found.soft_tissue)},
           {"cancellous_HU", core::or_null(found.cancellous)},
           {"cortical_HU", core::or_null(found.cortical)},
+          {"cortex_m", core::or_null(found.cortex_m)},
           {"warnings", found.warnings}};
 }
 
