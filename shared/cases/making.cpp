@@ -58,12 +58,9 @@ class Tried {
 
   /// What a breach feels like.
   core::Result<Palpated> palpated(const Breach& breach) {
-    volume::Volume breached = *bone_;
-    const auto box =
-        volume::drill(breached, placed_->tract, placed_->mouth_m, breach, placed_->empty_value);
-    field_->update(breached, box);
+    redrill(breach, true);
     auto out = observer_.palpate_near(*field_, palpated_, breach.wall.wall, breach.wall.at_m);
-    field_->update(drilled_, box);
+    redrill(breach, false);
     return out;
   }
   Observer::Felt felt(const Perception& perception) const {
@@ -86,10 +83,15 @@ class Tried {
  private:
   Tried(const volume::Volume& bone, const Placed& placed, Observer observer)
       : bone_(&bone), placed_(&placed), observer_(std::move(observer)), drilled_(bone) {}
+  void redrill(const Breach& breach, bool breached) {
+    const auto box = volume::redrill(drilled_, *bone_, placed_->tract, placed_->mouth_m, breach,
+                                     breached, placed_->empty_value);
+    field_->update(drilled_, box);
+  }
   const volume::Volume* bone_;
   const Placed* placed_;
   Observer observer_;
-  volume::Volume drilled_;  // without a breach
+  volume::Volume drilled_;  // without a breach, but while one is palpated
   std::unique_ptr<volume::ForceField> field_;
   Palpated palpated_;
   Observer::Felt felt_;

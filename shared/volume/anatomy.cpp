@@ -1,6 +1,7 @@
 #include "volume/anatomy.hpp"
 
 #include <fmt/format.h>
+#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
@@ -74,7 +75,7 @@ struct Found {
 /// The best plane of a grid of offsets and turns about `middle`.
 Found best_of(const Mirror& mirror, const Midline& middle, double offset_m, double offset_step_m,
               double turn_rad, double turn_step_rad) {
-  Found best{middle, {}};
+  std::vector<Found> planes;
   const int offsets = int(std::lround(offset_m / offset_step_m)),
             turns = int(std::lround(turn_rad / turn_step_rad));
   for (int i = -offsets; i <= offsets; ++i)
@@ -82,9 +83,13 @@ Found best_of(const Mirror& mirror, const Midline& middle, double offset_m, doub
       Midline plane = middle;
       plane.at_m.x() += i * offset_step_m;
       plane.turn_rad = std::clamp(middle.turn_rad + j * turn_step_rad, -kTurn_rad, kTurn_rad);
-      if (const Score score = mirror.score(plane); score.rank > best.score.rank)
-        best = {plane, score};
+      planes.push_back({plane, {}});
     }
+  tbb::parallel_for(std::size_t(0), planes.size(),
+                    [&](std::size_t n) { planes[n].score = mirror.score(planes[n].plane); });
+  Found best{middle, {}};
+  for (const Found& found : planes)
+    if (found.score.rank > best.score.rank) best = found;
   return best;
 }
 

@@ -67,6 +67,22 @@ double share_inside(const Shape& shape, const Geometry& geometry, const Vec3& ce
   return sum / 27.0;
 }
 
+Box box_of(const Geometry& geometry, const Tract& tract, const std::vector<Vec3>& spine) {
+  return box_about(geometry, spine, tract.radius_m + geometry.spacing_m.norm());
+}
+
+void drill_within(const Box& box, const Shape& shape, double empty, Volume& volume) {
+  const Geometry& geometry = volume.geometry;
+  for (int k = box.begin[2]; k < box.end[2]; ++k)
+    for (int j = box.begin[1]; j < box.end[1]; ++j)
+      for (int i = box.begin[0]; i < box.end[0]; ++i) {
+        const double share = share_inside(shape, geometry, geometry.position_of(Vec3(i, j, k)));
+        const double before = volume.value(i, j, k);
+        if (share == 0.0 || before <= empty) continue;
+        volume.counts[volume.offset(i, j, k)] = volume.count_of(before + share * (empty - before));
+      }
+}
+
 }  // namespace
 
 core::Result<double> empty_value(const Volume& volume, const TransferFunction& transfer) {
@@ -87,16 +103,22 @@ core::Result<double> empty_value(const Volume& volume, const TransferFunction& t
 Box drill(Volume& volume, const Tract& tract, double mouth_m, const std::optional<Breach>& breach,
           double empty) {
   const Shape shape(tract, mouth_m, breach);
-  const Geometry& geometry = volume.geometry;
-  const Box box = box_about(geometry, shape.spine(), tract.radius_m + geometry.spacing_m.norm());
+  const Box box = box_of(volume.geometry, tract, shape.spine());
+  drill_within(box, shape, empty, volume);
+  return box;
+}
+
+Box redrill(Volume& drilled, const Volume& bone, const Tract& tract, double mouth_m,
+            const Breach& breach, bool breached, double empty) {
+  const Box box = box_of(drilled.geometry, tract, {breach.from_m, breach.tip_m});
   for (int k = box.begin[2]; k < box.end[2]; ++k)
-    for (int j = box.begin[1]; j < box.end[1]; ++j)
-      for (int i = box.begin[0]; i < box.end[0]; ++i) {
-        const double share = share_inside(shape, geometry, geometry.position_of(Vec3(i, j, k)));
-        const double before = volume.value(i, j, k);
-        if (share == 0.0 || before <= empty) continue;
-        volume.counts[volume.offset(i, j, k)] = volume.count_of(before + share * (empty - before));
-      }
+    for (int j = box.begin[1]; j < box.end[1]; ++j) {
+      const auto from = std::ptrdiff_t(bone.offset(box.begin[0], j, k));
+      std::copy_n(bone.counts.begin() + from, box.end[0] - box.begin[0],
+                  drilled.counts.begin() + from);
+    }
+  const Shape shape(tract, mouth_m, breached ? std::optional(breach) : std::nullopt);
+  drill_within(box, shape, empty, drilled);
   return box;
 }
 

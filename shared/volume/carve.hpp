@@ -108,4 +108,10 @@ core::Result<double> empty_value(const Volume& volume, const TransferFunction& t
 Box drill(Volume& volume, const Tract& tract, double mouth_m, const std::optional<Breach>& breach,
           double empty);
 
+/// Of a volume that was drilled without a breach makes what `drill` of the whole bone with `breach`
+/// gives, to the same bits: only what lies about the breach comes back from `bone` and is drilled
+/// anew. Without `breached` it goes back. Returns the box of the voxels that may have changed.
+Box redrill(Volume& drilled, const Volume& bone, const Tract& tract, double mouth_m,
+            const Breach& breach, bool breached, double empty);
+
 }  // namespace tractus::volume

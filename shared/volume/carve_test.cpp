@@ -199,6 +199,30 @@ TEST(Drill, AddsARoundedBreachBeyondTheEnd) {
   EXPECT_NEAR(removed_m3(before, block) / expected, 1.0, 0.005);
 }
 
+/// To the last count what the whole bone drilled once more would be, and back.
+TEST(Redrill, IsWhatDrillingTheWholeBoneGives) {
+  const Volume bone = rendered(grid({8, 20, 8}, 0.35, turned(20, {1, 0.4, 0.3})),
+                               [](const Vec3& p) { return 400.0 + 2e4 * p.x() + 3e4 * p.y(); });
+  const auto tract = tract_between({5 * kMm, 10 * kMm, 0}, {2 * kMm, -9 * kMm, 2 * kMm}, 14 * kMm,
+                                   1.5 * kMm, stated_midline(0, Vec3::Zero()));
+  Volume whole = bone;
+  drill(whole, *tract, kMm, std::nullopt, 0.0);
+  Breach side{.wall = {.wall = Wall::lateral}, .depth_m = 3 * kMm};
+  side.from_m = tract->entry_m + 7 * kMm * tract->axis;
+  side.tip_m = side.from_m - 6 * kMm * tract->medial;
+  Breach end{.wall = {.wall = Wall::anterior}, .depth_m = 3 * kMm, .from_m = tract->end_m()};
+  end.tip_m = tract->end_m() + 5 * kMm * tract->axis;
+  for (const Breach& breach : {side, end}) {
+    Volume expected = bone, again = whole;
+    drill(expected, *tract, kMm, breach, 0.0);
+    ASSERT_NE(expected.counts, whole.counts);
+    redrill(again, bone, *tract, kMm, breach, true, 0.0);
+    EXPECT_EQ(again.counts, expected.counts);
+    redrill(again, bone, *tract, kMm, breach, false, 0.0);
+    EXPECT_EQ(again.counts, whole.counts);
+  }
+}
+
 TEST(Drill, MovesVoxelsAtTheWallByTheShareRemoved) {
   Volume block = rendered(grid({6, 6, 6}, 0.4), [](const Vec3&) { return 1000.0; });
   // Flat end at y = 0.1 mm: the voxel centred at y = 0 spans −0.2 … 0.2, a quarter of it is
