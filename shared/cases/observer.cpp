@@ -1,5 +1,7 @@
 #include "cases/observer.hpp"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -149,7 +151,7 @@ void Observer::press(const PalpationRuntime& probe, std::size_t wall, int first,
     const MotionGrid& grid = kGrids[motion];
     auto& into = out.side_N[motion][wall];
     into.resize(std::size_t(depths_ * grid.leans), kNone);
-    for (int i = first; i < last; ++i) {
+    tbb::parallel_for(first, last, [&](int i) {
       laws::PalpationState state;
       for (int j = 0; j < grid.leans; ++j) {
         const double lean_m = j * grid.step_m, depth = depth_m(i);
@@ -159,7 +161,7 @@ void Observer::press(const PalpationRuntime& probe, std::size_t wall, int first,
         into[std::size_t(i * grid.leans + j)] =
             float(-(X_VH->q * step.wrench_H.force_N).dot(outward));
       }
-    }
+    });
   }
 }
 
@@ -290,6 +292,8 @@ Detectability Observer::of_side(const Felt& whole, const Felt& breached, std::si
         };
         const Place& worst = *std::ranges::max_element(places, {}, dip);
         const double fa = dip(worst);
+        std::array<double, kSideWalls> fa_of_wall{};
+        for (const Place& p : places) fa_of_wall[p.wall] = std::max(fa_of_wall[p.wall], dip(p));
         for (int i = 0; i < depths_; ++i) {
           if (std::abs(depth_m(i) - at_m) > kAtBreach_m + 1e-9) continue;
           const auto at = std::size_t(i * kGrids[motion].leans + j);
@@ -309,6 +313,7 @@ Detectability Observer::of_side(const Felt& whole, const Felt& breached, std::si
                   .fa = fa,
                   .fa_wall = Wall(worst.wall),
                   .fa_at_m = depth_m(worst.depth),
+                  .fa_of_wall = fa_of_wall,
                   .motion = Motion(motion),
                   .contrast = contrast,
                   .lean_m = j * kGrids[motion].step_m,
@@ -350,7 +355,10 @@ double Observer::foretold(const Felt& whole, const Felt& breached, Wall wall, do
     return share_of_the_greatest(open + *of_end(whole, breached, perception).k, {});
   const auto told = of_side(whole, breached, std::size_t(wall), at_m, perception, kTipBears);
   if (!told.b) return 0.0;
-  return share_of_the_greatest(*told.b, {told.fa_wall == wall ? 0.0 : *told.fa, open});
+  std::array<double, 5> rivals{open};
+  for (std::size_t w = 0; w < kSideWalls; ++w)
+    if (Wall(w) != wall) rivals[1 + w] = told.fa_of_wall[w];
+  return share_of_the_greatest(*told.b, rivals);
 }
 
 double Observer::end_force_N(const Felt& whole, double within_m) const {

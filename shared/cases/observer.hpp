@@ -55,8 +55,9 @@ struct Detectability {
   std::optional<double> k;  ///< d′ of a press against the same place without the breach
   std::optional<double> b;  ///< d′ of the breach against all places of this tract; not of the end
   std::optional<double> fa;  ///< d′ of the worst whole place, which passes for a breach
-  std::optional<volume::Wall> fa_wall = {};  ///< where that is
-  double fa_at_m = 0.0;                      ///< depth along the tract
+  std::optional<volume::Wall> fa_wall = {};        ///< where that is
+  double fa_at_m = 0.0;                            ///< depth along the tract
+  std::array<double, kSideWalls> fa_of_wall = {};  ///< the same of each wall's worst whole place
   std::optional<Motion> motion = {};
   std::optional<Contrast> contrast = {};
   double lean_m = 0.0;   ///< of the straight tip beyond the axis; at the end: beyond the end
@@ -113,9 +114,9 @@ class Observer {
   ///     P = ∫ φ(x − d) Π Φ(x − m_i) dx                     [Hacker1979], there with all m_i = 0
   ///
   /// the chance that the evidence of the breach is the greatest of six answers, all normal. A side
-  /// wall's breach has d = B, and as rivals the worst whole place (m = FA; unless in this wall), a
-  /// whole end that lacks something of 0.3 N, two walls, and "no breach"; an anterior one has d = K,
-  /// more by what its whole end lacks. K, B, FA with noise of the mean of six looks.
+  /// wall's breach has d = B, and as rivals the worst whole place of each other wall (m = its FA), a
+  /// whole end that lacks something of 0.3 N, and "no breach"; an anterior one has d = K, more by
+  /// what its whole end lacks. K, B, FA with noise of the mean of six looks.
   double foretold(const Felt& whole, const Felt& breached, volume::Wall wall, double at_m,
                   const Perception& perception) const;
   /// The greatest mean force of a tap within `within_m` beyond the end, N.
