@@ -1,5 +1,7 @@
 #include "server/jobs/make_case.hpp"
 
+#include <fmt/format.h>
+
 #include <chrono>
 
 #include "cases/case.hpp"
@@ -96,6 +98,31 @@ cases::NewCase new_case(const store::CaseMaking& making, const SourceVolume& sou
   return out;
 }
 
+Result<void> marks_from(core::Fields& fields, cases::CarvingPlan& plan) {
+  using volume::EnvelopeMark;
+  const Json* given = fields.member("envelope_marks", false);
+  if (!given) return {};
+  if (!given->is_array() || given->size() > EnvelopeMark::kMostMarks) {
+    fields.wrong("envelope_marks",
+                 fmt::format("a list of at most {} marks is expected", EnvelopeMark::kMostMarks));
+    return {};
+  }
+  if (!given->empty() && plan.preparation != volume::Preparation::filled)
+    fields.wrong("envelope_marks", "published bone has no envelope: ask for filled bone");
+  for (std::size_t n = 0; n < given->size(); ++n) {
+    core::Fields one((*given)[n], fmt::format("{}/envelope_marks/{}", fields.where(), n));
+    EnvelopeMark mark;
+    mark.at_m = point(one, "at_m");
+    mark.radius_m = one.number("radius_m", EnvelopeMark::kLeast_m, EnvelopeMark::kMost_m);
+    const Json* bone = one.member("bone");
+    if (bone && !bone->is_boolean()) one.wrong("bone", "true or false is expected");
+    TRY(one.done());
+    mark.bone = bone->get<bool>();
+    plan.envelope_marks.push_back(mark);
+  }
+  return {};
+}
+
 }  // namespace
 
 Result<cases::CarvingPlan> plan_from(core::Fields& fields) {
@@ -110,6 +137,7 @@ Result<cases::CarvingPlan> plan_from(core::Fields& fields) {
     out.drilled = channel != "planned";
   }
   out.preparation = fields.word_or("preparation", out.preparation);
+  TRY(marks_from(fields, out));
   const Json* breach = fields.member("breach", false);
   if (!breach || breach->is_null()) return out;
   if (!out.drilled)
@@ -127,6 +155,9 @@ Json plan_json(const cases::CarvingPlan& plan) {
            {"channel", plan.drilled ? "drilled" : "planned"},
            {"preparation", volume::name(plan.preparation)},
            {"breach", Json()}};
+  for (const auto& mark : plan.envelope_marks)
+    out["envelope_marks"].push_back(
+        {{"at_m", numbers(mark.at_m)}, {"radius_m", mark.radius_m}, {"bone", mark.bone}});
   if (!plan.breach) return out;
   out["breach"] = {{"wall", volume::name(plan.breach->wall)}, {"depth_m", plan.breach->depth_m}};
   if (plan.breach->at_m) out["breach"]["at_m"] = *plan.breach->at_m;

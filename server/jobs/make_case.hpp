@@ -11,7 +11,8 @@
 
 namespace tractus::jobs {
 
-/// {"entry_m", "target_m", "radius_m"?, "breach"?: {"wall", "depth_m"?, "at_m"?} | null}, all in V.
+/// {"entry_m", "target_m", "radius_m"?, "breach"?: {"wall", "depth_m"?, "at_m"?} | null,
+/// "envelope_marks"?: [{"at_m", "radius_m", "bone"}]}, all in V.
 /// Errors: bad_input, out_of_range, led by the field.
 core::Result<cases::CarvingPlan> plan_from(core::Fields& fields);
 core::Json plan_json(const cases::CarvingPlan& plan);

@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "core/try.hpp"
-#include "volume/calibration.hpp"
 #include "volume/resample.hpp"
 
 namespace tractus {
@@ -49,6 +48,19 @@ core::Result<void> within(const char* what, double value_m, double low_m, double
                                                value_m * 1e3, low_m * 1e3, high_m * 1e3)};
 }
 
+core::Result<void> check_marks(const std::vector<volume::EnvelopeMark>& marks) {
+  using volume::EnvelopeMark;
+  if (marks.size() > EnvelopeMark::kMostMarks)
+    return Error{Errc::out_of_range, fmt::format("{} marks of the envelope: at most {} are allowed",
+                                                 marks.size(), EnvelopeMark::kMostMarks)};
+  for (const EnvelopeMark& mark : marks) {
+    if (!mark.at_m.allFinite())
+      return Error{Errc::bad_input, "marks of the envelope must be finite numbers"};
+    TRY(within("a mark's radius", mark.radius_m, EnvelopeMark::kLeast_m, EnvelopeMark::kMost_m));
+  }
+  return {};
+}
+
 core::Result<void> check(const CarvingPlan& plan, double length_m,
                          const volume::Geometry& geometry) {
   if (!plan.entry_m.allFinite() || !plan.target_m.allFinite())
@@ -60,8 +72,13 @@ core::Result<void> check(const CarvingPlan& plan, double length_m,
   TRY(within("a margin", plan.margin_m, 1e-3, 0.1));
   TRY(within("a way to move", plan.may_move_m, 0.0, kFarthestMove_m));
   TRY(within("a spacing", plan.spacing_m, 5e-5, 5e-3));
+  TRY(check_marks(plan.envelope_marks));
   if (!geometry.contains(plan.entry_m)) return outside("the entry", plan.entry_m, geometry);
   return {};
+}
+
+double length_of(const CarvingPlan& plan) {
+  return plan.length_m.value_or((plan.target_m - plan.entry_m).norm());
 }
 
 core::Result<volume::Midline> midline_of(const volume::Volume& ct,
@@ -95,7 +112,7 @@ core::Result<std::shared_ptr<const volume::Envelope>> envelope_of(const volume::
                                                                   const CarvingPlan& plan,
                                                                   const volume::Tract& tract) {
   std::shared_ptr<const volume::Envelope> envelope = plan.envelope;
-  if (!envelope) envelope = TRY(volume::envelope_about(ct, tract));
+  if (!envelope) envelope = TRY(volume::envelope_about(ct, tract, plan.envelope_marks));
   for (const double share : {0.4, 0.6, 0.8}) {
     const double depth_m = share * tract.length_m;
     if (envelope->share(tract.entry_m + depth_m * tract.axis) < 0.5)
@@ -107,11 +124,11 @@ core::Result<std::shared_ptr<const volume::Envelope>> envelope_of(const volume::
   return envelope;
 }
 
-std::vector<std::string> warnings_of(const volume::Volume& ct, const volume::Envelope& envelope,
-                                     const volume::Tract& tract) {
+volume::Calibration calibration_of(const volume::Volume& ct, const volume::Envelope& envelope,
+                                   const volume::Tract& tract) {
   auto found = volume::calibrate(volume::histogram_of(ct), ct.geometry);
   volume::calibrate_bone(ct, envelope, tract, found);
-  return found.warnings;
+  return found;
 }
 
 /// The tract's length in filled bone, where none is asked for: to shortly before the anterior face.
@@ -194,9 +211,17 @@ Truth Placed::truth() const {
   return truth;
 }
 
+core::Result<volume::Tract> planned_tract(const volume::Volume& ct,
+                                          const volume::TransferFunction& transfer,
+                                          const CarvingPlan& plan) {
+  const double length_m = length_of(plan);
+  TRY(check(plan, length_m, ct.geometry));
+  return tract_of(ct, transfer, plan, length_m, TRY(midline_of(ct, transfer, plan)));
+}
+
 core::Result<Placed> place(const volume::Volume& ct, const volume::TransferFunction& transfer,
                            const CarvingPlan& plan) {
-  const double length_m = plan.length_m.value_or((plan.target_m - plan.entry_m).norm());
+  const double length_m = length_of(plan);
   TRY(check(plan, length_m, ct.geometry));
   const auto empty = TRY(volume::empty_value(ct, transfer));
   const auto midline = TRY(midline_of(ct, transfer, plan));
@@ -211,7 +236,7 @@ core::Result<Placed> place(const volume::Volume& ct, const volume::TransferFunct
   if (plan.preparation == volume::Preparation::published)
     return with_walls(ct, transfer, plan, std::move(placed));
   placed.envelope = TRY(envelope_of(ct, plan, tract));
-  placed.warnings = warnings_of(ct, *placed.envelope, tract);
+  placed.calibration = calibration_of(ct, *placed.envelope, tract);
   const auto bone = TRY(prepared_ct(ct, transfer, placed));
   if (!plan.length_m)
     placed.tract.length_m = length_to_front_m(volume::WallFinder(bone, transfer), tract);

@@ -8,6 +8,7 @@
 
 #include "cases/case.hpp"
 #include "volume/anatomy.hpp"
+#include "volume/calibration.hpp"
 #include "volume/carve.hpp"
 #include "volume/fill.hpp"
 
@@ -35,6 +36,8 @@ struct CarvingPlan {
   volume::Preparation preparation = volume::Preparation::published;
   /// Of filled bone; found in the CT (volume::envelope_about) if not given.
   std::shared_ptr<const volume::Envelope> envelope = {};
+  /// Where a person says that there is bone of this vertebra or none, while it is looked for.
+  std::vector<volume::EnvelopeMark> envelope_marks = {};
 };
 
 /// Where a tract ends behind the anterior face of filled bone: its cortex, some 0.5 to 1 mm, and at
@@ -53,7 +56,7 @@ struct Placed {
   /// In the order of volume::kWalls, before the drill: where each wall is thinnest, or why that is
   /// not known.
   std::vector<core::Result<volume::WallFound>> walls;
-  std::vector<std::string> warnings = {};  ///< of filled bone: volume::Calibration's
+  volume::Calibration calibration = {};  ///< of filled bone
 
   Truth truth() const;
   bool left_side() const { return midline.left_of_plane_m(tract.entry_m) > 0; }
@@ -68,6 +71,12 @@ struct Carved : Placed {
 /// outside the volume, bad_input for numbers that are none.
 core::Result<volume::Box> box_that_matters(const volume::Geometry& geometry,
                                            const math::Vec3& entry_m, const math::Vec3& target_m);
+
+/// The tract of a plan as long as asked for, whether or not its bone can be filled. Errors: those of
+/// `place` but for the envelope's, the breach's and the end's.
+core::Result<volume::Tract> planned_tract(const volume::Volume& ct,
+                                          const volume::TransferFunction& transfer,
+                                          const CarvingPlan& plan);
 
 /// Finds the anatomy and places the breach. Errors: bad_input and out_of_range with one line for
 /// the person who asked (a point or the tract's end outside the volume, a tract that meets no bone,

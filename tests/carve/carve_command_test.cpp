@@ -134,6 +134,19 @@ TEST_F(Carve, FillsMarrowAndSaysWhatCanBeFelt) {
     EXPECT_EQ(part.secret, part.name != cases::kVolumePart) << part.name;
 }
 
+TEST_F(Carve, TakesAPersonsWordWhereTheEnvelopeIsWrong) {
+  const std::string filled = std::string(kLeft) + "--preparation filled ";
+  ASSERT_EQ(carve(filled + "--bone-at 31,0,0").exit, 0) << "outside the lateral wall";
+  const auto drilled = volume::VolumeFile::open(work() / "case" / "volume.tvol")->read_all();
+  ASSERT_TRUE(drilled);
+  EXPECT_GT(drilled->value_at(Vec3(0.031, 0.0, 0.0)), 500.0);
+  fs::remove_all(work() / "case");
+  ASSERT_EQ(carve(filled).exit, 0);
+  const auto before = volume::VolumeFile::open(work() / "case" / "volume.tvol")->read_all();
+  ASSERT_TRUE(before);
+  EXPECT_LT(before->value_at(Vec3(0.031, 0.0, 0.0)), 100.0);
+}
+
 TEST_F(Carve, TakesALineThatWasDrawnInSlicer) {
   const std::string drawn =
       R"({"markups": [{"type": "Line", "coordinateSystem": "RAS", "controlPoints": [)"
@@ -223,6 +236,9 @@ TEST_F(Carve, RefusesWithOneLineAndLeavesNothingBehind) {
       {left + "--model none.json", "none.json"},
       {left + "--preparation solid", "--preparation: 'solid'"},
       {left + "--envelope mask.nii", "--envelope: needs --preparation filled"},
+      {left + "--bone-at 1,2,3", "--bone-at and --no-bone-at: need --preparation filled"},
+      {left + "--preparation filled --no-bone-at 1,2", "--no-bone-at: '1,2'"},
+      {left + "--calibrated", "ct.tvol: the transfer function cannot be calibrated"},
       {left + "--certified --no-channel", "--certified"},
       {left + "--png none/picture.png", "none/picture.png"},
   };

@@ -23,7 +23,7 @@ using core::Error;
 using core::Json;
 using core::Result;
 
-constexpr std::uint64_t kMaxCaseMaking_bytes = 4096;
+constexpr std::uint64_t kMaxCaseMaking_bytes = 4096 + volume::EnvelopeMark::kMostMarks * 128;
 constexpr std::size_t kMaxTitle = 200;
 constexpr std::int64_t kMostShown = 50;
 
@@ -120,6 +120,9 @@ std::vector<NamedSchema> tract_schemas() {
   const Json wall = one_of<volume::Wall>("Wall of the tract");
   const Json point = tuple(number("m", "One coordinate x, y or z, in metres"), 3,
                            "Point in the volume's frame (LPS), in metres");
+  const auto peak = [](const std::string& tissue) {
+    return nullable(number("HU", "CT value of " + tissue + "; null where none was found"));
+  };
   const Json thinnest =
       object({{"at_m", number("m", "Depth along the tract, in metres")},
               {"inner_m", number("m", "Distance from the tract's axis to the bone, in metres")},
@@ -137,6 +140,10 @@ std::vector<NamedSchema> tract_schemas() {
                         "filled bone where the breach is told best"))},
             {"even", optional(truth("True: in filled bone, where the breach is as hard to tell as "
                                     "those of the other walls; without at_m"))}})},
+      {"EnvelopeMark",
+       object({{"at_m", point},
+               {"radius_m", number("m", "Radius of the ball, in metres, 0.001 to 0.01")},
+               {"bone", truth("True: there is bone of this vertebra; false: there is none")}})},
       {"TractWish", object(plan_fields())},
       {"PlannedWall",
        object({{"wall", wall},
@@ -159,6 +166,22 @@ std::vector<NamedSchema> tract_schemas() {
             {"depth_m", number("m", "Depth of the breach beyond the bone, in metres")},
             {"inner_m", number("m", "Distance from the tract's axis to the bone, in metres")},
             {"wall_thickness_m", number("m", "Thickness of the bone at the breach, in metres")}})},
+      {"PlannedEnvelope",
+       object({{"around", integer("1",
+                                  "Points of a row; the last joins the first; the first and the "
+                                  "last row are poles")},
+               {"points_m", array(point,
+                                  "The vertebra's outer face, a row after the other; also "
+                                  "where a problem says that it is refused")}})},
+      {"CtCalibration",
+       object({{"air_HU", peak("air")},
+               {"fat_HU", peak("fat")},
+               {"soft_tissue_HU", peak("soft tissue")},
+               {"cancellous_HU", peak("the cancellous bone about the tract")},
+               {"cortical_HU", peak("the cortical bone about the tract")},
+               {"cortex_m", nullable(number("m",
+                                            "Median thickness of the cortex about the tract, "
+                                            "in metres; null where it is not known"))}})},
       {"PlannedTract",
        object(
            {{"length_m", number("m", "Distance from the entry to the target, in metres")},
@@ -170,6 +193,8 @@ std::vector<NamedSchema> tract_schemas() {
             {"breach", nullable(ref("PlannedBreach"))},
             {"problems", array(text("One problem, as a sentence"),
                                "Problems of the plan; empty if a case can be made from it")},
+            {"envelope", nullable(ref("PlannedEnvelope"))},
+            {"calibration", nullable(ref("CtCalibration"))},
             {"warnings", array(text("One warning, as a sentence"),
                                "What makes the CT a poor one for filled bone; a case can be made "
                                "all the same")}})}};
@@ -222,18 +247,23 @@ std::vector<schema::Field> plan_fields() {
   using namespace schema;
   const Json point = tuple(number("m", "One coordinate x, y or z, in metres"), 3,
                            "Point in the volume's frame (LPS), in metres");
-  return {{"entry_m", point},
-          {"target_m", point},
-          {"radius_m", optional(number("m", "Radius of the drill, in metres; default 0.0015"))},
-          {"channel",
-           optional(one_of({"drilled", "planned"},
-                           "drilled (default): the channel is drilled into the volume; planned: "
-                           "the bone stays whole, and a trainee drills the channel"))},
-          {"preparation",
-           optional(one_of<volume::Preparation>(
-               "published (default): the CT's own values, marrow is not felt; filled: all bone "
-               "within the vertebra's envelope is felt"))},
-          {"breach", optional(nullable(ref("BreachWish")))}};
+  return {
+      {"entry_m", point},
+      {"target_m", point},
+      {"radius_m", optional(number("m", "Radius of the drill, in metres; default 0.0015"))},
+      {"channel",
+       optional(one_of({"drilled", "planned"},
+                       "drilled (default): the channel is drilled into the volume; planned: "
+                       "the bone stays whole, and a trainee drills the channel"))},
+      {"preparation",
+       optional(one_of<volume::Preparation>(
+           "published (default): the CT's own values, marrow is not felt; filled: all bone "
+           "within the vertebra's envelope is felt"))},
+      {"envelope_marks",
+       optional(array(ref("EnvelopeMark"),
+                      "Where a person says that there is bone of this vertebra or none, at most "
+                      "200; for filled bone"))},
+      {"breach", optional(nullable(ref("BreachWish")))}};
 }
 
 std::vector<RouteInfo> case_making_routes() {

@@ -174,6 +174,66 @@ TEST_F(CaseMaking, APlanIsPalpatedBeforeACaseIsMadeOfIt) {
   EXPECT_EQ(asked("tom", {{"effort", "first"}}).status, 403);
 }
 
+/// Filled bone shows its envelope, also where it is refused, and takes a person's marks of it.
+TEST_F(CaseMaking, AnEnvelopeIsShownAndMarked) {
+  const auto wish = [](const core::Json& more) {
+    core::Json out = plan({{"preparation", "filled"}, {"breach", nullptr}});
+    out.update(more);
+    return out;
+  };
+  EXPECT_EQ(look(plan({{"preparation", "published"}}))["envelope"], nullptr);
+  const core::Json found = look(wish(core::Json::object()));
+  ASSERT_EQ(found["problems"], core::Json::array());
+  ASSERT_FALSE(found["calibration"].is_null());
+  EXPECT_NEAR(found["calibration"]["cancellous_HU"].get<double>(), 60.0, 5.0);
+  const auto farthest_x = [](const core::Json& tract) {
+    double out = -1.0;
+    for (const core::Json& p : tract["envelope"]["points_m"])
+      if (std::abs(p[1].get<double>()) < 0.005) out = std::max(out, p[0].get<double>());
+    return out;
+  };
+  const std::size_t around = found["envelope"]["around"].get<std::size_t>();
+  EXPECT_EQ(found["envelope"]["points_m"].size() % around, 0u);
+  EXPECT_NEAR(farthest_x(found), 0.022, 0.001) << "the pedicle's lateral face";
+
+  const auto mark = [](double x, bool bone) {
+    return core::Json{{"at_m", {x, 0.0, 0.0}}, {"radius_m", 0.003}, {"bone", bone}};
+  };
+  const core::Json marked = look(wish({{"envelope_marks", {mark(0.025, true)}}}));
+  EXPECT_GT(farthest_x(marked), 0.0265) << "with what is said to be bone, and its far end";
+
+  // Said to be no bone, right at the tract: refused, and yet shown.
+  const core::Json refused = look(wish({{"envelope_marks", {mark(0.0182, false)}}}));
+  EXPECT_FALSE(refused["envelope"].is_null());
+
+  const core::Json making =
+      wish({{"volume", "released"}, {"title", "marked"}, {"envelope_marks", {mark(0.025, true)}}});
+  EXPECT_FALSE(made(making).empty());
+}
+
+TEST_F(CaseMaking, AWrongMarkOfAnEnvelopeIsRefusedByName) {
+  const auto status = [&](const core::Json& marks, const char* preparation) {
+    return post("fay", "/volumes/released/tract",
+                plan({{"preparation", preparation}, {"envelope_marks", marks}}));
+  };
+  const core::Json good{{"at_m", {0.0, 0.0, 0.0}}, {"radius_m", 0.003}, {"bone", true}};
+  EXPECT_EQ(status({good}, "published").status, 400);
+  EXPECT_EQ(status(core::Json::array(), "published").status, 200);
+  for (const auto& [key, value] : {std::pair<const char*, core::Json>{"radius_m", 0.5},
+                                   {"radius_m", "3"},
+                                   {"bone", 1},
+                                   {"at_m", {0.0, 0.0}},
+                                   {"more", 1}}) {
+    core::Json bad = good;
+    bad[key] = value;
+    const auto answer = status({good, bad}, "filled");
+    EXPECT_EQ(answer.status, 400) << key;
+    EXPECT_NE(text(answer).find("envelope_marks/1"), std::string::npos) << text(answer);
+  }
+  EXPECT_EQ(status(core::Json(201, good), "filled").status, 400);
+  EXPECT_EQ(status("all", "filled").status, 400);
+}
+
 /// A case as it was made before there were certificates.
 TEST_F(CaseMaking, AnOldCaseIsMarkedOnceItWasTried) {
   const std::string id = made(plan({{"volume", "released"}, {"title", "made"}}));

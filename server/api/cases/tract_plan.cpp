@@ -1,5 +1,7 @@
 #include "server/api/cases/tract_plan.hpp"
 
+#include <cmath>
+
 namespace tractus {
 namespace api {
 namespace {
@@ -38,6 +40,37 @@ Json wall_json(const volume::WallFinder& finder, const volume::Tract& tract, vol
                                 : Json()}};
 }
 
+/// To a tenth of a millimetre: it is looked at.
+Json envelope_json(const volume::OuterFace& face) {
+  if (face.points_m.empty()) return Json();
+  Json points = Json::array();
+  const auto rounded = [](double x_m) { return std::round(x_m * 1e4) / 1e4; };
+  for (const auto& p : face.points_m)
+    points.push_back({rounded(p.x()), rounded(p.y()), rounded(p.z())});
+  return {{"around", face.around}, {"points_m", std::move(points)}};
+}
+
+Json calibration_json(const volume::Calibration& found) {
+  return {{"air_HU", core::or_null(found.air)},
+          {"fat_HU", core::or_null(found.fat)},
+          {"soft_tissue_HU", core::or_null(found.soft_tissue)},
+          {"cancellous_HU", core::or_null(found.cancellous)},
+          {"cortical_HU", core::or_null(found.cortical)},
+          {"cortex_m", core::or_null(found.cortex_m)}};
+}
+
+/// No tract, and of filled bone the outer face that was found all the same: it shows what to mark.
+Json refused_json(const volume::Volume& ct, const volume::TransferFunction& transfer,
+                  const cases::CarvingPlan& plan, const std::string& problem) {
+  Json out = no_tract_json(plan, problem);
+  if (plan.preparation != volume::Preparation::filled) return out;
+  const auto tract = cases::planned_tract(ct, transfer, plan);
+  if (!tract) return out;
+  const auto face = volume::outer_face_about(ct, *tract, plan.envelope_marks);
+  if (face) out["envelope"] = envelope_json(*face);
+  return out;
+}
+
 Json breach_json(const volume::Breach& breach) {
   return {
       {"wall", volume::name(breach.wall.wall)}, {"at_m", breach.wall.at_m},
@@ -55,17 +88,23 @@ Json no_tract_json(const cases::CarvingPlan& plan, const std::string& problem) {
           {"walls", Json::array()},
           {"breach", Json()},
           {"problems", Json::array({problem})},
-          {"warnings", Json::array()}};
+          {"warnings", Json::array()},
+          {"envelope", Json()},
+          {"calibration", Json()}};
 }
 
 Json tract_json(const volume::Volume& ct, const volume::TransferFunction& transfer,
                 cases::CarvingPlan plan) {
   const auto asked = std::exchange(plan.breach, std::nullopt);
   const auto placed = cases::place(ct, transfer, plan);
-  if (!placed) return no_tract_json(plan, placed.error().what);
+  if (!placed) return refused_json(ct, transfer, plan, placed.error().what);
   Json out = no_tract_json(plan, "");
   out["problems"] = Json::array();
-  out["warnings"] = placed->warnings;
+  if (placed->envelope) {
+    out["warnings"] = placed->calibration.warnings;
+    out["calibration"] = calibration_json(placed->calibration);
+    out["envelope"] = envelope_json(placed->envelope->outer_face());
+  }
   out["side"] = placed->left_side() ? "left" : "right";
   out["tract"] = tract_of(placed->tract);
   std::optional<volume::Volume> filled;

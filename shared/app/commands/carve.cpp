@@ -31,6 +31,8 @@ struct CarveOptions {
   std::string entry, target, drawn, length, radius = "1.5", midline;
   std::string breach, breach_depth, breach_at, spacing = "0.35", margin = "20";
   std::string preparation = "published", envelope, observer, may_move;
+  std::vector<std::string> bone_at, no_bone_at;
+  bool calibrated = false;
   int envelope_label = 1;
   bool no_channel = false, certified = false;
   bool json = false;
@@ -70,6 +72,20 @@ core::Result<void> read_breach(const CarveOptions& o, cases::CarvingPlan& plan) 
   return read_length(o.breach_at, "--breach-at", plan.breach->at_m);
 }
 
+core::Result<void> read_marks(const CarveOptions& o, cases::CarvingPlan& plan) {
+  if (o.bone_at.empty() && o.no_bone_at.empty()) return {};
+  if (plan.preparation == volume::Preparation::published || !o.envelope.empty())
+    return Error{Errc::bad_input,
+                 "--bone-at and --no-bone-at: need --preparation filled, without --envelope"};
+  for (const auto& [points, option, bone] : {std::tuple(&o.bone_at, "--bone-at", true),
+                                             std::tuple(&o.no_bone_at, "--no-bone-at", false)})
+    for (const std::string& text : *points) {
+      const auto at_m = TRY(point_m(text, option));
+      plan.envelope_marks.push_back({.at_m = at_m, .bone = bone});
+    }
+  return {};
+}
+
 core::Result<void> read_preparation(const CarveOptions& o, cases::CarvingPlan& plan) {
   const auto preparation = core::from_name<volume::Preparation>(o.preparation);
   if (!preparation)
@@ -77,6 +93,7 @@ core::Result<void> read_preparation(const CarveOptions& o, cases::CarvingPlan& p
                  fmt::format("--preparation: '{}': one of {} is expected", o.preparation,
                              core::names_listed<volume::Preparation>())};
   plan.preparation = *preparation;
+  TRY(read_marks(o, plan));
   if (o.envelope.empty()) return {};
   if (plan.preparation == volume::Preparation::published)
     return Error{Errc::bad_input, "--envelope: needs --preparation filled"};
@@ -165,7 +182,7 @@ Json report_of(const cases::OpenedCase& made, const cases::Made& carved) {
       {"walls", Json::array()},
       {"breach", Json()},
       {"preparation", volume::name(made.definition.preparation)},
-      {"warnings", carved.warnings},
+      {"warnings", carved.calibration.warnings},
       {"moved_m", Json::array({carved.moved_m.x(), carved.moved_m.y()})},
       {"certificate", carved.certificate ? carved.certificate->to_json() : Json()}};
   out["midline"]["symmetry"] = carved.midline.symmetry ? Json(*carved.midline.symmetry) : Json();
@@ -223,7 +240,7 @@ void print_text(const cases::OpenedCase& made, const cases::Made& carved) {
     fmt::print("moved by {:.1f} mm to medial and {:.1f} mm to superior, so that all can be told\n",
                carved.moved_m.x() * 1e3, carved.moved_m.y() * 1e3);
   if (carved.certificate) print_certificate(*carved.certificate);
-  for (const auto& warning : carved.warnings) fmt::print("warning: {}\n", warning);
+  for (const auto& warning : carved.calibration.warnings) fmt::print("warning: {}\n", warning);
   if (!carved.drilled) fmt::print("the bone is whole: the tract is planned and not drilled\n");
   fmt::print(
       "{} x {} x {} voxels of {:.3g} x {:.3g} x {:.3g} mm; removed bone has the CT value {:g}\n",
@@ -313,14 +330,24 @@ Outcome run_five(const CarveOptions& o, const models::PalpationModel& model,
   return write_five(o, model, ct, *five);
 }
 
+core::Result<volume::TransferFunction> calibrated_transfer(const CarveOptions& o,
+                                                           const models::PalpationModel& model,
+                                                           const volume::Volume& ct) {
+  const auto found = volume::calibrate(volume::histogram_of(ct), ct.geometry);
+  auto transfer = volume::calibrated(model.transfer, found);
+  if (!transfer) return about(o.volume, transfer.error());
+  return transfer;
+}
+
 Outcome run_carve(const CarveOptions& o) {
   const auto plan = TRY(plan_of(o));
-  const auto model = TRY(model_of(o));
+  auto model = TRY(model_of(o));
   const auto perception = TRY(perception_of(o));
   if (std::error_code ignored; std::filesystem::exists(o.out, ignored))
     return Error{Errc::conflict,
                  fmt::format("{}: exists already; remove it or choose another name", o.out)};
   const auto ct = TRY(volume_io::read_volume(o.volume, core::terminal_progress("reading")));
+  if (o.calibrated) model.transfer = TRY(calibrated_transfer(o, model, ct.volume));
   if (o.breach == kEvery) return run_five(o, model, ct, plan, perception);
   const auto carved =
       cases::make(ct.volume, model, plan, core::terminal_progress("carving"), perception);
@@ -375,6 +402,9 @@ void add_options(CLI::App& app, CarveOptions& o) {
   app.add_option("--margin", o.margin, "margin of the volume around the tract, in mm (default 20)");
   app.add_option("--model", o.model,
                  "model file with probe and transfer function (default: the published model)");
+  app.add_flag("--calibrated", o.calibrated,
+               "move the model's transfer function with the peaks of air, fat and soft tissue that "
+               "this CT shows (tractus calibrate)");
   app.add_option("--preparation", o.preparation,
                  "how the bone is prepared before it is drilled: published (as in the paper: "
                  "marrow is not felt) or filled (all bone within the vertebra's envelope is felt); "
@@ -382,6 +412,13 @@ void add_options(CLI::App& app, CarveOptions& o) {
   app.add_option("--envelope", o.envelope,
                  "label map of the vertebra from another program, with --preparation filled "
                  "(default: the envelope is found in the CT)");
+  app.add_option(
+      "--bone-at", o.bone_at,
+      "with --preparation filled, where the envelope is found wrong: a point, in the form "
+      "of --entry, with bone of this vertebra within 3 mm; may be given more than once");
+  app.add_option(
+      "--no-bone-at", o.no_bone_at,
+      "the same, where nothing within 3 mm is bone of this vertebra (a rib, a neighbour)");
   app.add_option("--envelope-label", o.envelope_label, "label of the vertebra in it (default 1)");
   app.add_option("--observer", o.observer,
                  "whom the case must be felt by: a file of tractus-station threshold, whose "
