@@ -87,6 +87,17 @@ export const plannedWallSchema = v.object({
   thickness_m: v.array(v.nullable(finite)),
   thinnest: v.nullable(v.object({ at_m: inMetres, inner_m: inMetres, thickness_m: inMetres })),
 });
+/** The vertebra's outer face: a closed mesh, row by row from pole to pole, `around` points a row. */
+export const envelopeSchema = v.object({ around: count, points_m: v.array(point) });
+const peak = v.nullable(finite);
+/** CT values that the volume itself shows for what is known of it; null where no peak was found. */
+export const calibrationSchema = v.object({
+  air_HU: peak,
+  fat_HU: peak,
+  soft_tissue_HU: peak,
+  cancellous_HU: peak,
+  cortical_HU: peak,
+});
 export const plannedTractSchema = v.object({
   length_m: inMetres,
   side: v.nullable(v.picklist(['left', 'right'])),
@@ -106,6 +117,9 @@ export const plannedTractSchema = v.object({
   ),
   problems: v.array(v.string()),
   warnings: v.array(v.string()),
+  /** null for published bone; there also when it is refused, so that a person sees why. */
+  envelope: v.nullable(envelopeSchema),
+  calibration: v.nullable(calibrationSchema),
 });
 export const makingSchema = v.object({
   id: v.string(),
@@ -252,6 +266,8 @@ export type CaseTruth = v.InferOutput<typeof caseTruthSchema>;
 export type Certificate = v.InferOutput<typeof certificateSchema>;
 export type WallCertificate = v.InferOutput<typeof wallCertificateSchema>;
 export type PlannedTract = v.InferOutput<typeof plannedTractSchema>;
+export type Envelope = v.InferOutput<typeof envelopeSchema>;
+export type Calibration = v.InferOutput<typeof calibrationSchema>;
 export type PlannedWall = v.InferOutput<typeof plannedWallSchema>;
 export type Making = v.InferOutput<typeof makingSchema>;
 export type ScenarioVersion = v.InferOutput<typeof scenarioVersionSchema>;

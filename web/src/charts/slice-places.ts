@@ -25,15 +25,48 @@ export interface SliceMark {
   readonly fixed?: boolean;
 }
 
+/** A ball that is drawn where the slice cuts it. */
+export interface SliceBall {
+  readonly at: Vec3;
+  readonly radius_m: number;
+  readonly sign: '+' | '−';
+}
+
+/** A brush that paints balls instead of placing a mark. */
+export interface SliceBrush {
+  readonly radius_m: number;
+  readonly sign: '+' | '−';
+  /** Where the arrow keys have it. */
+  readonly cursor: Vec3;
+  readonly onCursor: (at: Vec3) => void;
+  /** `first`: a stroke begins; the others of it follow. */
+  readonly onPaint: (at: Vec3, first: boolean) => void;
+}
+
+/** Unit vector across the slice. */
+export function normalOf({ alongRow: u, alongColumn: w }: Pick<SlicePicture, 'alongRow' | 'alongColumn'>): Vec3 {
+  return [u[1] * w[2] - u[2] * w[1], u[2] * w[0] - u[0] * w[2], u[0] * w[1] - u[1] * w[0]];
+}
+
+/** Radius of the disc in which a plane cuts a ball; 0 where it passes the ball by. */
+export const discRadius_m = (radius_m: number, off_m: number) =>
+  Math.abs(off_m) < radius_m ? Math.sqrt(radius_m ** 2 - off_m ** 2) : 0;
+
+/** The places of a brush on its way from the last place that it painted, one for each `step_m`. */
+export function stroke(from: Vec3, to: Vec3, step_m: number): Vec3[] {
+  const way = sum(to, scaled(from, -1));
+  const steps = Math.floor(Math.sqrt(dot(way, way)) / step_m + 1e-9);
+  const share = step_m / Math.sqrt(dot(way, way));
+  return Array.from({ length: steps }, (_, i) => sum(from, scaled(way, (i + 1) * share)));
+}
+
 /** In pixels from the corner of the first one; how far off the plane. */
 export function onSlice(picture: SlicePicture, p: Vec3): { x: number; y: number; off_m: number } {
   const from = sum(p, scaled(picture.origin_m, -1));
-  const { alongRow: u, alongColumn: w } = picture;
-  const normal: Vec3 = [u[1] * w[2] - u[2] * w[1], u[2] * w[0] - u[0] * w[2], u[0] * w[1] - u[1] * w[0]];
   return {
-    x: dot(from, u) / picture.spacing_m[0] + 0.5,
-    y: dot(from, w) / picture.spacing_m[1] + 0.5,
-    off_m: dot(from, normal),
+    x: dot(from, picture.alongRow) / picture.spacing_m[0] + 0.5,
+    y: dot(from, picture.alongColumn) / picture.spacing_m[1] + 0.5,
+    off_m: dot(from, normalOf(picture)),
   };
 }
 
@@ -44,6 +77,12 @@ export function onPlane(picture: SlicePicture, x: number, y: number): Vec3 {
     scaled(picture.alongRow, (x - 0.5) * picture.spacing_m[0]),
     scaled(picture.alongColumn, (y - 0.5) * picture.spacing_m[1]),
   );
+}
+
+/** The point of the plane that is nearest to a point of the patient. */
+export function inPlane(picture: SlicePicture, p: Vec3): Vec3 {
+  const { x, y } = onSlice(picture, p);
+  return onPlane(picture, x, y);
 }
 
 const kLetters = [

@@ -1,8 +1,19 @@
-import { useEffect, useId, useRef, type KeyboardEvent, type PointerEvent } from 'react';
+import { useEffect, useId, useRef, useState, type KeyboardEvent, type PointerEvent } from 'react';
 import { say } from '@/language';
 import { formatLength, metre } from '@/units';
-import { letterAt, onPlane, onSlice, type SlicePicture, type SliceMark } from './slice-places';
+import type { CutLine } from './mesh-cut';
 import type { Vec3 } from './scene/types';
+import { Balls, BrushRings, Marks, Outline } from './slice-drawing';
+import {
+  inPlane,
+  letterAt,
+  onPlane,
+  stroke,
+  type SliceBall,
+  type SliceBrush,
+  type SliceMark,
+  type SlicePicture,
+} from './slice-places';
 import styles from './slice-view.module.css';
 
 interface Props {
@@ -22,13 +33,18 @@ interface Props {
   readonly marks: readonly SliceMark[];
   /** The mark that a click places and that the arrow keys move. */
   readonly chosen: string;
+  /** Lines in the plane, as where it cuts a surface. */
+  readonly outline?: readonly CutLine[];
+  readonly balls?: readonly SliceBall[];
+  /** Clicks, drags and keys paint with it instead of placing the mark. */
+  readonly brush?: SliceBrush | null;
   readonly onAt: (at_m: number) => void;
   readonly onPlace: (id: string, at: Vec3, done: boolean) => void;
 }
 
 const kStep_m = 0.0005,
   kFine_m = 0.0001;
-const kFar_m = 0.003; // farther from the plane than this, a mark is a shadow
+const kNone: readonly never[] = [];
 
 /** Drawn once a picture: grey pixels, as they came. */
 function paint(canvas: HTMLCanvasElement, { width, height, pixels }: SlicePicture): void {
@@ -45,6 +61,24 @@ function paint(canvas: HTMLCanvasElement, { width, height, pixels }: SlicePictur
   context.putImageData(image, 0, 0);
 }
 
+/** What a click and the keys do in the slice, for who cannot see it. */
+function labelOf(name: string, mark: string, brush: SliceBrush | null): string {
+  if (!brush)
+    return say(
+      '{name} slice. Click or drag places the {mark}; arrow keys move it by half a millimetre, with Shift by a tenth; Page Up and Page Down change the slice.',
+      { name, mark },
+    );
+  return brush.sign === '+'
+    ? say(
+        '{name} slice. Click or drag marks where bone is; arrow keys move the brush by half a millimetre, with Shift by a tenth; Enter paints; Page Up and Page Down change the slice.',
+        { name },
+      )
+    : say(
+        '{name} slice. Click or drag marks where no bone is; arrow keys move the brush by half a millimetre, with Shift by a tenth; Enter paints; Page Up and Page Down change the slice.',
+        { name },
+      );
+}
+
 /** A plane of a volume with marks that can be clicked, dragged and moved by keys. */
 export function SliceView({
   name,
@@ -57,12 +91,17 @@ export function SliceView({
   ends,
   marks,
   chosen,
+  outline = kNone,
+  balls = kNone,
+  brush = null,
   onAt,
   onPlace,
 }: Props) {
   const canvas = useRef<HTMLCanvasElement>(null);
   const drawing = useRef<SVGSVGElement>(null);
   const dragged = useRef<string | null>(null);
+  const painted = useRef<Vec3 | null>(null); // the last place of the stroke that is going on
+  const [hover, setHover] = useState<Vec3 | null>(null);
   const id = useId();
   useEffect(() => {
     if (canvas.current && picture) paint(canvas.current, picture);
@@ -78,17 +117,40 @@ export function SliceView({
     if (event.button !== 0) return;
     const at = placeOf(event);
     if (!at) return;
+    event.currentTarget.setPointerCapture(event.pointerId);
+    if (brush) {
+      painted.current = at;
+      brush.onPaint(at, true);
+      return;
+    }
     const mark =
       event.target instanceof Element ? event.target.closest('[data-mark]')?.getAttribute('data-mark') : undefined;
     dragged.current = mark ?? chosen;
-    event.currentTarget.setPointerCapture(event.pointerId);
     if (!mark) onPlace(chosen, at, false);
   };
+  const paintTo = (at: Vec3 | null) => {
+    if (!brush || !at || !painted.current) return;
+    for (const place of stroke(painted.current, at, brush.radius_m / 2)) {
+      brush.onPaint(place, false);
+      painted.current = place;
+    }
+  };
   const move = (event: PointerEvent) => {
+    if (brush) {
+      const under = placeOf(event);
+      setHover(under);
+      paintTo(under);
+      return;
+    }
     const at = dragged.current === null ? null : placeOf(event);
     if (at && dragged.current !== null) onPlace(dragged.current, at, false);
   };
   const end = (event: PointerEvent) => {
+    if (brush && painted.current) {
+      paintTo(placeOf(event));
+      brush.onCursor(painted.current);
+    }
+    painted.current = null;
     const at = dragged.current === null ? null : placeOf(event);
     if (at && dragged.current !== null) onPlace(dragged.current, at, true);
     dragged.current = null;
@@ -108,15 +170,20 @@ export function SliceView({
       ArrowDown: [0, 1],
     };
     const moved = moves[event.key];
-    const mark = marks.find((one) => one.id === chosen);
-    if (!moved || !mark) return;
+    const from = brush ? inPlane(picture, brush.cursor) : marks.find((one) => one.id === chosen)?.at;
+    if (from && brush && event.key === 'Enter') {
+      event.preventDefault();
+      brush.onPaint(from, true);
+    }
+    if (!moved || !from) return;
     event.preventDefault();
     const along = (i: 0 | 1 | 2) =>
-      mark.at[i] + step * (moved[0] * picture.alongRow[i] + moved[1] * picture.alongColumn[i]);
-    onPlace(chosen, [along(0), along(1), along(2)], true);
+      from[i] + step * (moved[0] * picture.alongRow[i] + moved[1] * picture.alongColumn[i]);
+    const to: Vec3 = [along(0), along(1), along(2)];
+    if (brush) brush.onCursor(to);
+    else onPlace(chosen, to, true);
   };
 
-  const scale = picture ? Math.max(picture.width, picture.height) / 100 : 1;
   return (
     <div className={styles.view} data-plane={name.toLowerCase()} data-ready={(picture !== null && !late) || undefined}>
       <div className={styles.head}>
@@ -134,62 +201,22 @@ export function SliceView({
                 viewBox={`0 0 ${picture.width} ${picture.height}`}
                 role="application"
                 aria-roledescription={say('slice')}
-                aria-label={say(
-                  '{name} slice. Click or drag places the {mark}; arrow keys move it by half a millimetre, with Shift by a tenth; Page Up and Page Down change the slice.',
-                  { name: say(name), mark: chosen },
-                )}
+                aria-label={labelOf(say(name), chosen, brush)}
                 tabIndex={0}
                 onKeyDown={onKeyDown}
                 onPointerDown={begin}
                 onPointerMove={move}
                 onPointerUp={end}
+                onPointerLeave={() => setHover(null)}
                 onPointerCancel={() => {
-                  dragged.current = null;
+                  dragged.current = painted.current = null;
                 }}
+                data-brush={brush ? true : undefined}
               >
-                {marks.map((mark) => {
-                  const here = onSlice(picture, mark.at),
-                    there = mark.to ? onSlice(picture, mark.to) : null;
-                  const far = Math.abs(here.off_m) > kFar_m;
-                  return there ? (
-                    <line
-                      key={mark.id}
-                      className={styles[mark.look]}
-                      x1={here.x}
-                      y1={here.y}
-                      x2={there.x}
-                      y2={there.y}
-                      strokeWidth={(mark.wide ?? 0.6) * scale}
-                    />
-                  ) : (
-                    <g
-                      key={mark.id}
-                      className={styles[mark.look]}
-                      data-mark={mark.fixed ? undefined : mark.id}
-                      data-far={far || undefined}
-                      data-chosen={mark.id === chosen || undefined}
-                    >
-                      <circle className={styles.grip} cx={here.x} cy={here.y} r={3.4 * scale} />
-                      <circle
-                        className={styles.dot}
-                        cx={here.x}
-                        cy={here.y}
-                        r={1.5 * scale}
-                        strokeWidth={0.6 * scale}
-                      />
-                      {mark.text === undefined ? null : (
-                        <text
-                          x={here.x + 2.6 * scale}
-                          y={here.y - 2 * scale}
-                          fontSize={4.2 * scale}
-                          strokeWidth={0.9 * scale}
-                        >
-                          {mark.text}
-                        </text>
-                      )}
-                    </g>
-                  );
-                })}
+                <Outline lines={outline} picture={picture} />
+                <Balls balls={balls} picture={picture} />
+                <Marks marks={marks} chosen={chosen} picture={picture} />
+                {brush ? <BrushRings brush={brush} hover={hover} picture={picture} /> : null}
               </svg>
             ) : (
               <p className={styles.waiting} role="status">

@@ -6,21 +6,21 @@ import {
   plannedTractQuery,
   sourceVolumesQuery,
   volumeBoneQuery,
-  type PlannedTract,
   type Preview,
   type SourceVolume,
   type Vec3,
   type Window,
 } from '@/api';
 import { PlanView } from '@/charts';
-import { marked, say, Sentence } from '@/language';
-import { Button, Card, Notice, Select, Skeleton, usePalette, useTitle, useSettled, wallName } from '@/ui';
-import { formatLength } from '@/units';
+import { marked, say } from '@/language';
+import { Button, Card, Notice, Select, Skeleton, usePalette, useTitle, useSettled } from '@/ui';
+import { BrushFields } from './brush';
 import styles from './cases.module.css';
 import { PlannedCertificate } from './certificate';
 import { BreachFields, PointFields } from './fields';
+import { Findings, Peaks } from './findings';
 import { Make } from './make';
-import { draw, fromAddress, toAddress, requestOf, type End, type Plan } from './plan';
+import { draw, fromAddress, toAddress, requestOf, type End, type Tool } from './plan';
 import { Slices } from './slices';
 import { Walls } from './walls';
 
@@ -30,75 +30,11 @@ const kWindows: Record<string, { readonly text: string; readonly window: Window 
   soft: { text: marked('Soft tissue'), window: { low: -160, high: 240 } },
 };
 
+const kBrush_m = 0.003;
+
 function middleOf(block: Preview): Vec3 {
   const { low, high } = boundsOf(block);
   return [(low[0] + high[0]) / 2, (low[1] + high[1]) / 2, (low[2] + high[2]) / 2];
-}
-
-/** The server's findings about the plan, as sentences. */
-function Findings({
-  plan,
-  found,
-  looking,
-}: {
-  readonly plan: Plan;
-  readonly found: PlannedTract | undefined;
-  readonly looking: boolean;
-}) {
-  if (!plan.entry || !plan.target)
-    return (
-      <p className={styles.muted} role="status">
-        {say('Place the entry, then the target: click in a slice, drag a marker, or enter coordinates.')}
-      </p>
-    );
-  if (!found)
-    return (
-      <p className={styles.muted} role="status">
-        {looking ? say('Analysing the bone…') : ''}
-      </p>
-    );
-  const { breach, problems, warnings } = found;
-  return (
-    <div className={styles.findings} data-part="findings" data-late={looking || undefined} role="status">
-      {problems.map((problem) => (
-        <p key={problem} className={styles.problem}>
-          {problem}
-        </p>
-      ))}
-      {warnings.map((warning) => (
-        <p key={warning} data-part="warning">
-          {say('Warning: {warning}', { warning })}
-        </p>
-      ))}
-      {found.tract ? (
-        <p>
-          {found.side === 'left'
-            ? say('Left side, tract of {length}.', { length: formatLength(found.length_m) })
-            : say('Right side, tract of {length}.', { length: formatLength(found.length_m) })}
-        </p>
-      ) : null}
-      {breach ? (
-        <p data-part="breach">
-          <Sentence
-            text="The {wall} wall is breached at a depth of <strong>{at}</strong>, where it is <strong>{thickness}</strong> thick; the tool extends {beyond} beyond the bone."
-            values={{
-              wall: wallName(breach.wall),
-              at: formatLength(breach.at_m),
-              thickness: formatLength(breach.wall_thickness_m),
-              beyond: formatLength(breach.depth_m),
-            }}
-            parts={{ strong: (words) => <strong>{words}</strong> }}
-          />
-        </p>
-      ) : found.tract ? (
-        <p>
-          {plan.whole
-            ? say('No channel is pre-drilled: trainees drill this tract and then palpate it.')
-            : say('No wall is breached.')}
-        </p>
-      ) : null}
-    </div>
-  );
 }
 
 function Workbench({ volume, block }: { readonly volume: SourceVolume; readonly block: Preview }) {
@@ -109,7 +45,8 @@ function Workbench({ volume, block }: { readonly volume: SourceVolume; readonly 
     past: [],
     future: [],
   }));
-  const [chosen, setChosen] = useState<End>(plan.entry ? 'target' : 'entry');
+  const [tool, setTool] = useState<Tool>(plan.entry ? 'target' : 'entry');
+  const [brush_m, setBrush] = useState(kBrush_m);
   const [focus, setFocus] = useState<Vec3>(() => plan.entry ?? middleOf(block));
   const [dragging, setDragging] = useState(false);
   const [window_, setWindow] = useState('bone');
@@ -122,13 +59,16 @@ function Workbench({ volume, block }: { readonly volume: SourceVolume; readonly 
     window.history.replaceState(null, '', `?${toAddress(settled)}`);
   }, [settled]);
 
+  const filled = plan.preparation === 'filled';
+  const chosen: Tool = filled || tool === 'target' ? tool : 'entry'; // only filled bone has an envelope to correct
+
   const place = (end: End, at: Vec3, done: boolean) => {
     step({ kind: 'change', to: end === 'entry' ? { entry: at } : { target: at }, passing: dragging });
     setDragging(!done);
-    setChosen(end);
+    setTool(end);
     if (!done) return;
     setFocus(at);
-    if (end === 'entry' && !plan.target) setChosen('target');
+    if (end === 'entry' && !plan.target) setTool('target');
   };
   const type = (end: End, at: Vec3) => {
     step({ kind: 'change', to: end === 'entry' ? { entry: at } : { target: at } });
@@ -162,10 +102,12 @@ function Workbench({ volume, block }: { readonly volume: SourceVolume; readonly 
             window={kWindows[window_]?.window ?? { low: -200, high: 1100 }}
             plan={plan}
             found={found}
-            chosen={chosen}
+            tool={chosen}
+            brush_m={brush_m}
             focus={focus}
             onFocus={setFocus}
             onPlace={place}
+            onPaint={(mark, first) => step({ kind: 'paint', mark, passing: !first })}
           />
         </Card>
         <div className={styles.pair}>
@@ -202,7 +144,7 @@ function Workbench({ volume, block }: { readonly volume: SourceVolume; readonly 
       <Card title={say('Tract')} className={styles.side ?? ''}>
         <div className={styles.stack}>
           <fieldset className={styles.ends}>
-            <legend className="hidden-visually">{say('End of the tract that a click places')}</legend>
+            <legend className="hidden-visually">{say('What a click in a slice does')}</legend>
             {(['entry', 'target'] as const).map((end) => (
               <PointFields
                 key={end}
@@ -210,13 +152,23 @@ function Workbench({ volume, block }: { readonly volume: SourceVolume; readonly 
                 at={plan[end]}
                 chosen={chosen === end}
                 onChoose={() => {
-                  setChosen(end);
+                  setTool(end);
                   const at = plan[end];
                   if (at) setFocus(at);
                 }}
                 onAt={(at) => type(end, at)}
               />
             ))}
+            {filled ? (
+              <BrushFields
+                chosen={chosen}
+                radius_m={brush_m}
+                marks={plan.marks.length}
+                onChoose={setTool}
+                onRadius={setBrush}
+                onRemove={() => step({ kind: 'change', to: { marks: [] } })}
+              />
+            ) : null}
           </fieldset>
           <BreachFields
             plan={plan}
@@ -232,6 +184,7 @@ function Workbench({ volume, block }: { readonly volume: SourceVolume; readonly 
           ) : (
             <Findings plan={plan} found={found} looking={looking} />
           )}
+          {found?.calibration && !answer.isError ? <Peaks calibration={found.calibration} /> : null}
           <Make
             volume={volume.id}
             plan={plan}

@@ -1,5 +1,17 @@
 import { describe, expect, it } from 'vitest';
-import { draw, fiveOf, fromAddress, kNoPlan, toAddress, requestOf, type Drawing } from './plan';
+import {
+  caseOf,
+  draw,
+  fiveOf,
+  fromAddress,
+  kMostMarks,
+  kNoPlan,
+  requestOf,
+  toAddress,
+  type Drawing,
+  type EnvelopeMark,
+  type Plan,
+} from './plan';
 
 const empty: Drawing = { plan: kNoPlan, past: [], future: [] };
 
@@ -36,7 +48,12 @@ describe('a plan of a case', () => {
       breach: { wall: 'medial', depth_m: 0.003, at_m: null },
       whole: false,
       preparation: 'published',
-    } as const;
+      marks: [
+        { at_m: [0.046, 0.2001, -0.061], radius_m: 0.003, bone: true },
+        { at_m: [0.0465, 0.21, -0.0005], radius_m: 0.0015, bone: false },
+      ],
+    } satisfies Plan;
+    expect(toAddress(plan)).toContain('marks=46,200.1,-61,3,+;46.5,210,-0.5,1.5,-');
     expect(fromAddress(toAddress(plan))).toEqual(plan);
   });
   it('asks for no breach in bone that is left whole, and says so in its address', () => {
@@ -59,5 +76,69 @@ describe('a plan of a case', () => {
   });
   it('takes nothing from an address that is none', () => {
     expect(fromAddress('entry=1,2&target=a,b,c&breach=upwards,3')).toEqual(kNoPlan);
+  });
+  it('keeps an address of the most marks that there may be short enough for a server', () => {
+    const marks = Array.from({ length: kMostMarks }, (_, i) => ({ ...kMark, at_m: [-0.12345, 0.2 + i * 1e-5, -0.5] }));
+    // The server takes heads of 16 KiB; a request names the address twice, as what it asks for and where it comes from.
+    expect(toAddress({ ...kNoPlan, marks: marks as EnvelopeMark[] }).length).toBeLessThan(6000);
+  });
+  it('takes from an address only the marks that are some', () => {
+    const marks = (text: string) => fromAddress(`marks=${text}`).marks;
+    expect(marks('1,2,3,3,%2B;1,2,3,3,+;4,5,6,2,-').map(({ bone }) => bone)).toEqual([true, true, false]);
+    for (const bad of [
+      '1,2,3,3',
+      '1,2,,3,+',
+      '1,2,3,0.9,+',
+      '1,2,3,11,+',
+      '1,2,3,x,+',
+      '1,2,3,3,*',
+      '1,2,3,3,+,4',
+      ';',
+    ])
+      expect(marks(bad)).toEqual([]);
+    expect(marks(Array.from({ length: 250 }, () => '1,2,3,3,+').join(';'))).toHaveLength(kMostMarks);
+  });
+});
+
+const kMark: EnvelopeMark = { at_m: [0.046, 0.2001, -0.061], radius_m: 0.003, bone: false };
+
+describe('marks of the envelope', () => {
+  const paint = (drawing: Drawing, passing: boolean, mark = kMark) => draw(drawing, { kind: 'paint', mark, passing });
+
+  it('go with the stroke that painted them, when it is undone', () => {
+    const once = paint(empty, false, { ...kMark, bone: true });
+    const stroke = paint(paint(paint(once, false), true), true);
+    expect(stroke.plan.marks).toHaveLength(4);
+    const back = draw(stroke, { kind: 'undo' });
+    expect(back.plan.marks).toEqual([{ ...kMark, bone: true }]);
+    expect(draw(back, { kind: 'redo' }).plan.marks).toHaveLength(4);
+    expect(draw(back, { kind: 'undo' }).plan).toEqual(kNoPlan);
+  });
+  it('come back after all were removed', () => {
+    const removed = draw(paint(empty, false), { kind: 'change', to: { marks: [] } });
+    expect(removed.plan.marks).toEqual([]);
+    expect(draw(removed, { kind: 'undo' }).plan.marks).toEqual([kMark]);
+  });
+  it('are no more than the server takes', () => {
+    let drawing = empty;
+    for (let i = 0; i <= kMostMarks; ++i) drawing = paint(drawing, i > 0);
+    expect(drawing.plan.marks).toHaveLength(kMostMarks);
+    expect(paint(drawing, false)).toBe(drawing);
+  });
+  it('are asked of the server to 1 µm, for filled bone alone, and for each case that is made', () => {
+    const placed: Plan = {
+      ...kNoPlan,
+      entry: [0, 0, 0],
+      target: [0, -0.04, 0],
+      marks: [{ at_m: [0.01234567, 0, -0.0000004], radius_m: 0.0030000001, bone: true }],
+    };
+    const request = requestOf(placed);
+    const tidy = [{ at_m: [0.012346, 0, -0], radius_m: 0.003, bone: true }];
+    expect(request?.envelope_marks).toEqual(tidy);
+    expect(requestOf({ ...placed, preparation: 'published' })).not.toHaveProperty('envelope_marks');
+    expect(requestOf({ ...placed, marks: [] })).not.toHaveProperty('envelope_marks');
+    if (!request) return;
+    expect(caseOf(request, 'v', 'L3').envelope_marks).toEqual(tidy);
+    expect(fiveOf(request, 'v', 'L3').map(({ envelope_marks }) => envelope_marks)).toEqual(Array(5).fill(tidy));
   });
 });

@@ -1,11 +1,20 @@
 import { useQuery } from '@tanstack/react-query';
 import { useMemo } from 'react';
-import { boundsOf, sliceQuery, type PlannedTract, type Preview, type SlicePlane, type Vec3, type Window } from '@/api';
-import { SliceView, type SliceMark } from '@/charts';
+import {
+  boundsOf,
+  sliceQuery,
+  type Envelope,
+  type PlannedTract,
+  type Preview,
+  type SlicePlane,
+  type Vec3,
+  type Window,
+} from '@/api';
+import { cutLines, normalOf, SliceView, type SliceBall, type SliceMark, type SlicePicture } from '@/charts';
 import { marked, say } from '@/language';
 import { Notice } from '@/ui';
 import styles from './cases.module.css';
-import type { End, Plan } from './plan';
+import type { End, EnvelopeMark, Plan, Tool } from './plan';
 
 const kPlanes: readonly { plane: SlicePlane; name: string; axis: 0 | 1 | 2; ends: readonly [string, string] }[] = [
   { plane: 'axial', name: marked('Axial'), axis: 2, ends: [marked('feet'), marked('head')] },
@@ -13,6 +22,7 @@ const kPlanes: readonly { plane: SlicePlane; name: string; axis: 0 | 1 | 2; ends
   { plane: 'sagittal', name: marked('Sagittal'), axis: 0, ends: [marked('right'), marked('left')] },
 ];
 const kPitch_m = 0.0005;
+const kNoMarks: readonly EnvelopeMark[] = [];
 
 const add = (a: Vec3, b: Vec3, by: number): Vec3 => [a[0] + by * b[0], a[1] + by * b[1], a[2] + by * b[2]];
 
@@ -67,10 +77,21 @@ interface Props {
   readonly window: Window;
   readonly plan: Plan;
   readonly found: PlannedTract | undefined;
-  readonly chosen: End;
+  readonly tool: Tool;
+  readonly brush_m: number;
   readonly focus: Vec3;
   readonly onFocus: (at: Vec3) => void;
   readonly onPlace: (end: End, at: Vec3, done: boolean) => void;
+  /** `first`: a stroke of the brush begins. */
+  readonly onPaint: (mark: EnvelopeMark, first: boolean) => void;
+}
+
+const signOf = (bone: boolean) => (bone ? '+' : '−');
+const ballOf = ({ at_m, radius_m, bone }: EnvelopeMark): SliceBall => ({ at: at_m, radius_m, sign: signOf(bone) });
+
+/** Where the slice that is shown cuts the envelope. */
+function outlineOf(envelope: Envelope | null, picture: SlicePicture | undefined) {
+  return envelope && picture ? cutLines(envelope, { origin_m: picture.origin_m, normal: normalOf(picture) }) : [];
 }
 
 type Placed = (typeof kPlanes)[number];
@@ -81,16 +102,30 @@ function OnePlane({
   low,
   high,
   marks,
+  balls,
   volume,
   window,
-  chosen,
+  found,
+  tool,
+  brush_m,
   focus,
   onFocus,
   onPlace,
-}: Props & { readonly where: Placed; readonly low: Vec3; readonly high: Vec3; readonly marks: readonly SliceMark[] }) {
+  onPaint,
+}: Props & {
+  readonly where: Placed;
+  readonly low: Vec3;
+  readonly high: Vec3;
+  readonly marks: readonly SliceMark[];
+  readonly balls: readonly SliceBall[];
+}) {
   const at =
     Math.round(Math.min(Math.max(Math.round(focus[axis] / kPitch_m) * kPitch_m, low[axis]), high[axis]) * 1e6) / 1e6;
   const query = useQuery(sliceQuery(volume, plane, at, window));
+  const envelope = found?.envelope ?? null;
+  const outline = useMemo(() => outlineOf(envelope, query.data), [envelope, query.data]);
+  const bone = tool === 'bone';
+  const painting = bone || tool === 'no_bone';
   return (
     <div>
       {query.isError ? (
@@ -107,7 +142,20 @@ function OnePlane({
         to_m={high[axis]}
         ends={[say(ends[0]), say(ends[1])]}
         marks={marks}
-        chosen={chosen}
+        chosen={painting ? '' : tool}
+        outline={outline}
+        balls={balls}
+        brush={
+          painting
+            ? {
+                radius_m: brush_m,
+                sign: signOf(bone),
+                cursor: focus,
+                onCursor: onFocus,
+                onPaint: (place, first) => onPaint({ at_m: [...place], radius_m: brush_m, bone }, first),
+              }
+            : null
+        }
         onAt={(to) => onFocus([axis === 0 ? to : focus[0], axis === 1 ? to : focus[1], axis === 2 ? to : focus[2]])}
         onPlace={(id, to, done) => {
           if (id === 'entry' || id === 'target') onPlace(id, to, done);
@@ -117,16 +165,43 @@ function OnePlane({
   );
 }
 
+/** What the lines and signs over the slices are. */
+function Legend({ envelope, marks }: { readonly envelope: Envelope | null; readonly marks: readonly EnvelopeMark[] }) {
+  return (
+    <ul className={styles.sliceLegend} data-part="slice-legend">
+      {envelope ? (
+        <li>
+          <span className={styles.sample} data-line="envelope" aria-hidden="true" />
+          {say('Envelope: outer face of the vertebra; all bone within it is filled')}
+        </li>
+      ) : null}
+      {([true, false] as const)
+        .filter((bone) => marks.some((mark) => mark.bone === bone))
+        .map((bone) => (
+          <li key={String(bone)}>
+            <span className={styles.sign} data-brush={bone ? 'bone' : 'no_bone'} aria-hidden="true" />
+            {bone ? say('Marked: bone here') : say('Marked: no bone here')}
+          </li>
+        ))}
+    </ul>
+  );
+}
+
 /** The volume in three planes through one point, with the plan drawn over it. */
 export function Slices(props: Props) {
   const { block, plan, found } = props;
   const bounds = useMemo(() => boundsOf(block), [block]);
   const marks = useMemo(() => marksOf(plan, found), [plan, found]);
+  const painted = plan.preparation === 'filled' ? plan.marks : kNoMarks;
+  const balls = useMemo(() => painted.map(ballOf), [painted]);
   return (
-    <div className={styles.slices}>
-      {kPlanes.map((where) => (
-        <OnePlane key={where.plane} where={where} marks={marks} {...bounds} {...props} />
-      ))}
-    </div>
+    <>
+      <div className={styles.slices}>
+        {kPlanes.map((where) => (
+          <OnePlane key={where.plane} where={where} marks={marks} balls={balls} {...bounds} {...props} />
+        ))}
+      </div>
+      <Legend envelope={found?.envelope ?? null} marks={painted} />
+    </>
   );
 }
