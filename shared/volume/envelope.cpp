@@ -140,11 +140,17 @@ class PerRay {
   std::vector<double> values_;  // [row][turn]
 };
 
+/// The rays of a pole are one ray, found as often: there their mean is taken.
 OuterFace outer_face_of(const Fan& fan, const PerRay& face_m) {
   OuterFace out{.around = Fan::kRays, .points_m = {}};
-  for (int row = 0; row < fan.rows(); ++row)
+  for (int row = 0; row < fan.rows(); ++row) {
+    double mean_m = 0.0;
+    for (int turn = 0; turn < Fan::kRays; ++turn) mean_m += face_m.at(row, turn) / Fan::kRays;
+    const bool pole = row == 0 || row + 1 == fan.rows();
     for (int turn = 0; turn < Fan::kRays; ++turn)
-      out.points_m.push_back(fan.foot(row) + face_m.at(row, turn) * fan.direction(row, turn));
+      out.points_m.push_back(fan.foot(row) +
+                             (pole ? mean_m : face_m.at(row, turn)) * fan.direction(row, turn));
+  }
   return out;
 }
 

@@ -181,6 +181,8 @@ TEST(OuterFaceAbout, ShowsTheFaceAlsoWhereItIsRefused) {
     ++beside_pedicle;
   }
   EXPECT_GT(beside_pedicle, 10 * face->around);
+  for (int turn = 0; turn < face->around; ++turn)
+    EXPECT_NEAR((face->points_m[std::size_t(turn)] - face->points_m.front()).norm(), 0.0, 1e-9);
   Tract beside = soft_tract();
   beside.entry_m.x() = 0.020;
   EXPECT_TRUE(outer_face_about(drawn_soft(soft_bone), beside));

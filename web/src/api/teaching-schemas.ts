@@ -97,6 +97,7 @@ export const calibrationSchema = v.object({
   soft_tissue_HU: peak,
   cancellous_HU: peak,
   cortical_HU: peak,
+  cortex_m: v.nullable(inMetres),
 });
 export const plannedTractSchema = v.object({
   length_m: inMetres,

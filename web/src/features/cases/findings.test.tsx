@@ -32,10 +32,17 @@ describe('what to do about a problem', () => {
   });
 });
 
-it('names the peaks of the CT values in whole HU, also those that were not found', () => {
-  const calibration = { air_HU: -1002.6, fat_HU: null, soft_tissue_HU: 42, cancellous_HU: 0.3, cortical_HU: 620 };
+it('names the peaks of the CT values in whole HU, also those that were not found, and the cortex in hundredths of a millimetre', () => {
+  const calibration = {
+    air_HU: -1002.6,
+    fat_HU: null,
+    soft_tissue_HU: 42,
+    cancellous_HU: 0.3,
+    cortical_HU: 620,
+    cortex_m: metre(0.00057),
+  };
   render(<Peaks calibration={calibration} />);
   expect(screen.getByText(/Peaks/).textContent.replaceAll('\u202f', ' ')).toBe(
-    'Peaks of the CT values: air −1003 HU, fat not found, soft tissue 42 HU, cancellous bone 0 HU, cortical bone 620 HU.',
+    'Peaks of the CT values: air −1003 HU, fat not found, soft tissue 42 HU, cancellous bone 0 HU, cortical bone 620 HU; thickness of the cortex 0.57 mm.',
   );
 });

@@ -1,7 +1,7 @@
 import type { Calibration, PlannedTract } from '@/api';
 import { say, Sentence } from '@/language';
 import { wallName } from '@/ui';
-import { formatLength, formatMeasure } from '@/units';
+import { formatLength, formatMeasure, metre } from '@/units';
 import styles from './cases.module.css';
 import type { Plan } from './plan';
 
@@ -86,13 +86,14 @@ export function Peaks({ calibration }: { readonly calibration: Calibration }) {
   return (
     <p className={styles.muted} data-part="peaks">
       {say(
-        'Peaks of the CT values: air {air}, fat {fat}, soft tissue {tissue}, cancellous bone {cancellous}, cortical bone {cortical}.',
+        'Peaks of the CT values: air {air}, fat {fat}, soft tissue {tissue}, cancellous bone {cancellous}, cortical bone {cortical}; thickness of the cortex {thickness}.',
         {
           air: peak(calibration.air_HU),
           fat: peak(calibration.fat_HU),
           tissue: peak(calibration.soft_tissue_HU),
           cancellous: peak(calibration.cancellous_HU),
           cortical: peak(calibration.cortical_HU),
+          thickness: calibration.cortex_m === null ? say('not found') : formatLength(metre(calibration.cortex_m), 2),
         },
       )}
     </p>
