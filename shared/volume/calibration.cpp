@@ -171,7 +171,7 @@ void calibrate_bone(const Volume& ct, const Envelope& envelope, const Tract& tra
   if (*out.cortical < kWeakCortex)
     out.warnings.push_back(fmt::format(
         "cortex measures {:.0f}, under {:.0f}: a soft kernel, coarse voxels or porous bone; its "
-        "thickness cannot be told from the values",
+        "thickness is an estimate from how it is blurred",
         *out.cortical, kWeakCortex));
 }
 
