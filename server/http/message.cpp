@@ -6,6 +6,7 @@
 #include <charconv>
 
 #include "core/json.hpp"
+#include "core/trim.hpp"
 #include "core/words.hpp"
 #include "server/http/networks.hpp"
 
@@ -18,12 +19,6 @@ int hex_digit(char c) {
   if (c >= 'a' && c <= 'f') return c - 'a' + 10;
   if (c >= 'A' && c <= 'F') return c - 'A' + 10;
   return -1;
-}
-
-std::string_view trimmed(std::string_view text) {
-  while (!text.empty() && text.front() == ' ') text.remove_prefix(1);
-  while (!text.empty() && text.back() == ' ') text.remove_suffix(1);
-  return text;
 }
 
 std::optional<std::uint64_t> whole_number(std::string_view text) {
@@ -64,7 +59,7 @@ std::string_view RequestHead::cookie(std::string_view name) const {
   std::string_view rest = header("cookie");
   while (!rest.empty()) {
     const auto end = std::min(rest.find(';'), rest.size());
-    const std::string_view pair = trimmed(rest.substr(0, end));
+    const std::string_view pair = core::trimmed(rest.substr(0, end));
     if (pair.size() > name.size() && pair.starts_with(name) && pair[name.size()] == '=')
       return pair.substr(name.size() + 1);
     rest.remove_prefix(std::min(end + 1, rest.size()));

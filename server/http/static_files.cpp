@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <array>
 
+#include "core/trim.hpp"
+
 namespace tractus {
 namespace http {
 namespace fs = std::filesystem;
@@ -72,19 +74,13 @@ struct Coding {
 };
 constexpr std::array<Coding, 2> kCodings{{{"br", ".br"}, {"gzip", ".gz"}}};
 
-std::string_view without_blanks(std::string_view text) {
-  const auto first = text.find_first_not_of(" \t");
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(" \t") - first + 1);
-}
-
 /// Does an Accept-Encoding header name the coding, with a weight above 0 (RFC 9110, section 12.5.3)?
 /// "*" is not taken as consent: a client that reads a coding names it.
 bool accepts(std::string_view header, std::string_view coding) {
   while (!header.empty()) {
     const std::string_view item = header.substr(0, header.find(','));
     header.remove_prefix(std::min(header.size(), item.size() + 1));
-    const std::string_view name = without_blanks(item.substr(0, item.find(';')));
+    const std::string_view name = core::trimmed(item.substr(0, item.find(';')));
     if (name != coding) continue;
     const auto weight = item.find("q=");
     return weight == std::string_view::npos ||

@@ -7,30 +7,26 @@
 #include <optional>
 #include <string_view>
 
+#include "core/trim.hpp"
+
 namespace tractus {
 namespace commands {
 namespace {
 
-std::string_view trimmed(std::string_view text) {
-  while (!text.empty() && text.front() == ' ') text.remove_prefix(1);
-  while (!text.empty() && text.back() == ' ') text.remove_suffix(1);
-  return text;
-}
-
 /// Takes a unit off the end; metres per unit.
 double unit_of(std::string_view& text) {
-  text = trimmed(text);
+  text = core::trimmed(text);
   double metres = 1e-3;
   if (text.ends_with("mm"))
     text.remove_suffix(2);
   else if (text.ends_with('m'))
     metres = 1.0, text.remove_suffix(1);
-  text = trimmed(text);
+  text = core::trimmed(text);
   return metres;
 }
 
 std::optional<double> number(std::string_view text) {
-  text = trimmed(text);
+  text = core::trimmed(text);
   double value = 0.0;
   const auto [end, failure] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (failure != std::errc() || end != text.data() + text.size() || !std::isfinite(value))

@@ -5,16 +5,11 @@
 #include <algorithm>
 
 #include "assessment/report.hpp"
+#include "core/trim.hpp"
 
 namespace tractus {
 namespace assessment {
 namespace {
-
-std::string_view trimmed(std::string_view text) {
-  const auto first = text.find_first_not_of(" \t");
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(" \t") - first + 1);
-}
 
 std::vector<std::string_view> split_at_and(std::string_view text) {
   std::vector<std::string_view> out;
@@ -46,9 +41,9 @@ core::Result<Filter> Filter::parse(const std::string& text) {
     if (at == std::string_view::npos || end == std::string_view::npos)
       return core::bad_input(
           fmt::format("condition '{}': COLUMN = VALUE is expected, or != < <= > >=", part));
-    Condition one{std::string(trimmed(part.substr(0, at))),
+    Condition one{std::string(core::trimmed(part.substr(0, at))),
                   std::string(part.substr(at, end - at)),
-                  std::string(trimmed(part.substr(end))),
+                  std::string(core::trimmed(part.substr(end))),
                   {}};
     const bool known = one.op == "=" || one.op == "!=" || one.op == "<" || one.op == "<=" ||
                        one.op == ">" || one.op == ">=";

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/trim.hpp"
 #include "effects/formula.hpp"
 
 namespace tractus {
@@ -57,12 +58,6 @@ std::string with_names(const std::string& formula, std::size_t from, std::size_t
   return out;
 }
 
-std::string trimmed(std::string text) {
-  const auto first = text.find_first_not_of(' ');
-  return first == std::string::npos ? ""
-                                    : text.substr(first, text.find_last_not_of(' ') - first + 1);
-}
-
 }  // namespace
 
 FormulaProgram::FormulaProgram(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
@@ -77,7 +72,7 @@ core::Result<FormulaProgram> FormulaProgram::make(const std::string& formula,
   parts->quantities = quantities.size();
   parts->inputs.assign(quantities.size() + memories.size(), 0.0);
   const auto piece = [&](std::size_t from, std::size_t to, std::size_t known) {
-    const std::string text = trimmed(with_names(formula, from, to, memories.first(known)));
+    const std::string text(core::trimmed(with_names(formula, from, to, memories.first(known))));
     Parts::Piece out;
     for (std::size_t k = 0; k < quantities.size(); ++k)
       if (quantities[k].name == text) out.name = &parts->inputs[k];
