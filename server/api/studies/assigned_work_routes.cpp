@@ -111,7 +111,9 @@ Result<void> release_unstarted(store::Writing& tx, const Call& call, const store
   auto slot = TRY(store::slot_of(tx, slot_id));
   if (!slot) return {};
   auto id = store::find_assignment(tx, slot->study_id);
-  if (!id) return {};  // of a study, whose slots a researcher releases
+  if (!id && id.error().code == core::Errc::not_found)
+    return {};  // of a study, whose slots a researcher releases
+  if (!id) return id.error();
   auto participant = TRY(store::participant_for(tx, *id, account.id));
   if (slot->participant != participant) return {};
   return store::release_unstarted_slot(tx, *slot, call.caller.id,
