@@ -75,7 +75,8 @@ void heed_marks(std::span<const EnvelopeMark> marks, const Vec3& foot, const Vec
     const Vec3 to = mark.at_m - foot;
     const double along_m = to.dot(direction),
                  half2 = mark.radius_m * mark.radius_m - (to.squaredNorm() - along_m * along_m);
-    if (half2 <= 0.0 || along_m <= 0.0) continue;
+    const bool met = half2 > 0.0 && along_m > 0.0 && along_m < Envelope::kReach_m + mark.radius_m;
+    if (!met) continue;
     const double half_m = std::sqrt(half2);
     const int near = std::clamp(int((along_m - half_m) / kRadialStep_m), 0, kRadial - 1),
               far = std::clamp(int((along_m + half_m) / kRadialStep_m) + 1, 0, kRadial - 1);
@@ -209,9 +210,10 @@ core::Result<void> check_ring(const Volume& ct, const Fan& fan, const FoundEnvel
     sum += ct.value_at(fan.foot(row) + (envelope.at(row, 0) + kCanal_m) * fan.direction(row, 0));
   if (const double mean = sum / double(ring.size()); mean > kContrastAgent)
     return refusal(
-        fmt::format("{:.0f} HU are measured in the spinal canal: a contrast agent there "
-                    "cannot be told from bone; choose another CT, or give the envelope",
-                    mean));
+        fmt::format("{:.0f} HU are measured where the spinal canal should be, {:.0f} mm beyond the "
+                    "medial face: a contrast agent, which cannot be told from bone, or a face in "
+                    "the wrong place; mark the bone, choose another CT, or give the envelope",
+                    mean, kCanal_m * 1e3));
   return {};
 }
 

@@ -147,6 +147,20 @@ TEST(EnvelopeAbout, TakesInWhatIsMarkedAsBone) {
 
 /// Cortex of several thicknesses, drawn in voxels of 1 mm: what blurs it is the voxel itself and what
 /// reads between voxels, of which the model knows nothing.
+TEST(EnvelopeAbout, IsNotMovedByMarksThatNoRayMeets) {
+  const auto ct = drawn_soft(soft_bone);
+  const auto plain = envelope_about(ct, soft_tract());
+  for (const double far : {0.05, 1.0, 1e9, 1e300}) {
+    const std::vector<EnvelopeMark> marks{{Vec3(far, 0.0, 0.0), 0.003, true},
+                                          {Vec3(far, far, 0.0), 0.003, false}};
+    const auto marked = envelope_about(ct, soft_tract(), marks);
+    ASSERT_TRUE(marked) << marked.error().what;
+    for (const Vec3& p :
+         {Vec3(0.004, 0.0, 0.002), Vec3(0.008, -0.02, 0.0), Vec3(-0.003, 0.01, 0.0)})
+      EXPECT_EQ((*marked)->inside_m(p), (*plain)->inside_m(p)) << far;
+  }
+}
+
 TEST(EnvelopeAbout, MeasuresTheCortexOfADrawnVertebra) {
   for (const double thickness_mm : {0.6, 1.2, 2.0}) {
     const auto scene = [&](const Vec3& p_m) {
