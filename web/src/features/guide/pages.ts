@@ -92,6 +92,11 @@ export const kPages: readonly GuidePage[] = [
         to: { href: '/cases', name: 'Cases' },
       },
       {
+        title: 'Check what can be felt',
+        text: 'The page says for each wall whether a breach can be felt, and where best. With filled bone, the dashed outline in the slices is the outer face of the vertebra that was found: where it is wrong, paint “Bone here” or “No bone here”. Move the entry or the target until every wall can be felt.',
+        to: { href: '/cases', name: 'Cases' },
+      },
+      {
         title: 'Assign the case',
         text: 'Choose a cohort or individual trainees, repeats, order and due date. Each trainee gets an individual, blinded order. Results stay hidden until you release them.',
         to: { href: '/assignments', name: 'Assignments' },
