@@ -137,6 +137,7 @@ describe.runIf(inject('fixture')).each(places)('in %s at %i px', (locale, width)
       '/ratings/agreement',
       '/account/notifications',
       '/account/tokens',
+      '/network/tokens',
       '/cases',
       '/curricula',
       '/certificates/t0/c1',
