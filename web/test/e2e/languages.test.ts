@@ -138,6 +138,7 @@ describe.runIf(inject('fixture')).each(places)('in %s at %i px', (locale, width)
       '/account/notifications',
       '/account/tokens',
       '/network/tokens',
+      '/network/mail',
       '/cases',
       '/curricula',
       '/certificates/t0/c1',
