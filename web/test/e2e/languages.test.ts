@@ -138,6 +138,11 @@ describe.runIf(inject('fixture')).each(places)('in %s at %i px', (locale, width)
       '/curricula',
       '/certificates/t0/c1',
       '/account',
+      '/guide',
+      '/guide/faculty',
+      '/guide/technician',
+      '/guide/first-week',
+      '/guide/scripts',
     ]) {
       await page.goto(address);
       await page.waitForLoadState('networkidle');
