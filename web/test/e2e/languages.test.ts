@@ -143,6 +143,8 @@ describe.runIf(inject('fixture')).each(places)('in %s at %i px', (locale, width)
       '/guide/technician',
       '/guide/first-week',
       '/guide/scripts',
+      '/studies',
+      '/studies/new',
     ]) {
       await page.goto(address);
       await page.waitForLoadState('networkidle');
