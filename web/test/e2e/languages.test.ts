@@ -143,6 +143,13 @@ describe.runIf(inject('fixture')).each(places)('in %s at %i px', (locale, width)
       '/curricula',
       '/certificates/t0/c1',
       '/account',
+      '/guide',
+      '/guide/faculty',
+      '/guide/technician',
+      '/guide/first-week',
+      '/guide/scripts',
+      '/studies',
+      '/studies/new',
     ]) {
       await page.goto(address);
       await page.waitForLoadState('networkidle');
