@@ -1,6 +1,8 @@
 import { useRef, useState, type KeyboardEvent } from 'react';
 import type { Account, AccountChanges } from '@/api';
+import { say } from '@/language';
 import { AskDialog, Field } from '@/ui';
+import { formatCount } from '@/units';
 import styles from './class.module.css';
 
 /** A field for each person: a badge scanner types the number and Enter, which leads to the next one. */
@@ -25,13 +27,13 @@ export function Badges({
   };
   return (
     <AskDialog
-      title="Assign badges"
-      action={`Save ${typed.length}`}
+      title={say('Assign badges')}
+      action={say('Save {count}', { count: formatCount(typed.length) })}
       ready={typed.length > 0 && !typed.some(({ id }) => twice(id))}
       onAction={() => onSave(typed.map(({ id }) => ({ id, badge: badges[id]?.trim() ?? '' })))}
       onClose={onClose}
     >
-      <p>Scan the badges one after the other. An empty field leaves the badge as it is.</p>
+      <p>{say('Scan the badges one after the other. An empty field leaves the badge as it is.')}</p>
       <div className={styles.badges}>
         {accounts.map(({ id, name, badge }, place) => (
           <Field
@@ -45,7 +47,7 @@ export function Badges({
               if (element) fields.current.set(id, element);
               else fields.current.delete(id);
             }}
-            error={(badges[id] ?? '') !== '' && twice(id) ? 'Another person has this badge.' : ''}
+            error={(badges[id] ?? '') !== '' && twice(id) ? say('Another person has this badge.') : ''}
             onKeyDown={(event) => onKey(event, place)}
             onChange={(event) => setBadges({ ...badges, [id]: event.target.value })}
           />

@@ -1,5 +1,6 @@
 import { encode } from 'uqr';
 import { cardAddress } from '@/api';
+import { say } from '@/language';
 import { Button, Card, Notice } from '@/ui';
 import styles from './class.module.css';
 
@@ -18,7 +19,7 @@ function Code({ text, name }: { readonly text: string; readonly name: string }) 
       className={styles.code}
       viewBox={`0 0 ${size} ${size}`}
       role="img"
-      aria-label={`Code that opens the sign-in of ${name}`}
+      aria-label={say('Code that opens the sign-in of {name}', { name })}
       shapeRendering="crispEdges"
     >
       <rect width={size} height={size} fill="#fff" />
@@ -32,19 +33,20 @@ export function Cards({ cards }: { readonly cards: readonly SignInCard[] }) {
   const { origin, host } = window.location;
   return (
     <Card
-      title={`${cards.length} sign-in ${cards.length === 1 ? 'card' : 'cards'}`}
+      title={say('{count, plural, one {# sign-in card} other {# sign-in cards}}', { count: cards.length })}
       aside={
         <span className={styles.screen}>
           <Button look="solid" onClick={() => window.print()}>
-            Print cards
+            {say('Print cards')}
           </Button>
         </span>
       }
     >
       <div className={styles.screen}>
-        <Notice tone="warn" title="Print the cards now: the passwords are shown only here.">
-          A card works once: its password must be changed at the first sign-in. If a card is lost, make a new one under
-          “Change accounts”.
+        <Notice tone="warn" title={say('Print the cards now: the passwords are shown only here.')}>
+          {say(
+            'A card works once: its password must be changed at the first sign-in. If a card is lost, make a new one under “Change accounts”.',
+          )}
         </Notice>
       </div>
       <ul className={styles.cards} data-part="cards">
@@ -54,14 +56,16 @@ export function Cards({ cards }: { readonly cards: readonly SignInCard[] }) {
             <div>
               <p className={styles.person}>{name}</p>
               <dl className={styles.facts}>
-                <dt>Address</dt>
+                <dt>{say('Address')}</dt>
                 <dd>{host}</dd>
-                <dt>First password</dt>
+                <dt>{say('First password')}</dt>
                 <dd className={styles.password}>{password}</dd>
-                <dt>Badge</dt>
-                <dd>{badge ?? 'none yet'}</dd>
+                <dt>{say('Badge')}</dt>
+                <dd>{badge ?? say('none yet')}</dd>
               </dl>
-              <p className={styles.small}>Scan the code, or type name and password. Then choose your own password.</p>
+              <p className={styles.small}>
+                {say('Scan the code, or type name and password. Then choose your own password.')}
+              </p>
             </div>
           </li>
         ))}

@@ -10,7 +10,8 @@ import {
   type AccountChanges,
   type Role,
 } from '@/api';
-import { AskDialog, Button, Card, DataTable, Field, Notice, Select } from '@/ui';
+import { marked, say } from '@/language';
+import { AskDialog, Button, Card, DataTable, Field, Notice, roleName, Select } from '@/ui';
 import { formatCount } from '@/units';
 import { Badges } from './badges';
 import { Cards } from './cards';
@@ -19,12 +20,13 @@ import { Frame } from './frame';
 
 type What = 'level' | 'cohort' | 'role' | 'badges' | 'cards';
 const kActions: readonly { readonly value: What; readonly text: string }[] = [
-  { value: 'level', text: 'Set level' },
-  { value: 'cohort', text: 'Add to a cohort' },
-  { value: 'role', text: 'Change role' },
-  { value: 'badges', text: 'Assign badges' },
-  { value: 'cards', text: 'Print new sign-in cards' },
+  { value: 'level', text: marked('Set level') },
+  { value: 'cohort', text: marked('Add to a cohort') },
+  { value: 'role', text: marked('Change role') },
+  { value: 'badges', text: marked('Assign badges') },
+  { value: 'cards', text: marked('Print new sign-in cards') },
 ];
+const kStates: Readonly<Record<Account['state'], string>> = { active: marked('active'), disabled: marked('disabled') };
 
 /** Asks for what is to be set of all chosen accounts. */
 function Change({
@@ -40,7 +42,7 @@ function Change({
 }) {
   const cohorts = useQuery({ ...cohortsQuery, enabled: what === 'cohort' });
   const [value, setValue] = useState(what === 'role' ? 'trainee' : '');
-  const many = `${formatCount(chosen.length)} ${chosen.length === 1 ? 'account' : 'accounts'}`;
+  const count = chosen.length;
   const changes = (): Omit<AccountChanges, 'accounts'> => {
     switch (what) {
       case 'level':
@@ -55,15 +57,18 @@ function Change({
   };
   return (
     <AskDialog
-      title={`${kActions.find((one) => one.value === what)?.text ?? ''}: ${many}`}
-      action={what === 'cards' ? 'Make new cards' : 'Change'}
+      title={say('{action}: {count, plural, one {# account} other {# accounts}}', {
+        action: say(kActions.find((one) => one.value === what)?.text ?? ''),
+        count,
+      })}
+      action={what === 'cards' ? say('Make new cards') : say('Change')}
       ready={what === 'cards' || what === 'level' || value !== ''}
       onAction={() => onChange(changes())}
       onClose={onClose}
     >
       {what === 'level' ? (
         <Field
-          label="Level (empty: none)"
+          label={say('Level (empty: none)')}
           value={value}
           maxLength={64}
           onChange={(event) => setValue(event.target.value)}
@@ -71,11 +76,11 @@ function Change({
       ) : null}
       {what === 'cohort' ? (
         <Select
-          label="Cohort"
+          label={say('Cohort')}
           value={value}
           onChange={(event) => setValue(event.target.value)}
           options={[
-            { value: '', text: 'Choose a cohort' },
+            { value: '', text: say('Choose a cohort') },
             ...(cohorts.data?.cohorts ?? []).map(({ id, name }) => ({ value: id, text: name })),
           ]}
         />
@@ -83,23 +88,30 @@ function Change({
       {what === 'role' ? (
         <>
           <Select
-            label="Role"
+            label={say('Role')}
             value={value}
             onChange={(event) => setValue(event.target.value)}
-            options={kRoles.map((role) => ({ value: role, text: role === 'admin' ? 'administrator' : role }))}
+            options={kRoles.map((role) => ({
+              value: role,
+              text: role === 'admin' ? say('administrator') : roleName(role),
+            }))}
           />
           <p>
             {value === 'admin'
-              ? `All ${many} will see and change everything on this server. `
-              : 'The people can do only what the new role allows. '}
-            All sessions of these accounts end.
+              ? say(
+                  'All {count, plural, one {# account} other {# accounts}} will see and change everything on this server. All sessions of these accounts end.',
+                  { count },
+                )
+              : say('The people can do only what the new role allows. All sessions of these accounts end.')}
           </p>
         </>
       ) : null}
       {what === 'cards' ? (
         <p>
-          The present passwords of {many} become invalid, their sessions end, and their one-time codes are turned off.
-          Each person chooses a new password with the card.
+          {say(
+            'The present passwords of {count, plural, one {# account} other {# accounts}} become invalid, their sessions end, and their one-time codes are turned off. Each person chooses a new password with the card.',
+            { count },
+          )}
         </p>
       ) : null}
     </AskDialog>
@@ -129,10 +141,12 @@ export function ChangePage() {
   return (
     <Frame
       at="/class/change"
-      lead="Role, level, cohort, badges or new sign-in cards for many accounts at once. All are changed, or none. Your own account is not in the list."
+      lead={say(
+        'Role, level, cohort, badges or new sign-in cards for many accounts at once. All are changed, or none. Your own account is not in the list.',
+      )}
     >
       {query.isError ? (
-        <Notice tone="bad" title="The accounts could not be loaded." onRetry={() => void query.refetch()}>
+        <Notice tone="bad" title={say('The accounts could not be loaded.')} onRetry={() => void query.refetch()}>
           {query.error.message}
         </Notice>
       ) : null}
@@ -147,10 +161,10 @@ export function ChangePage() {
       ) : null}
       <div className={styles.screen}>
         <Card
-          title="Accounts"
+          title={say('Accounts')}
           aside={
             <span role="status" className={styles.muted}>
-              {formatCount(chosen.length)} chosen
+              {say('{count} chosen', { count: formatCount(chosen.length) })}
             </span>
           }
         >
@@ -158,36 +172,37 @@ export function ChangePage() {
             <div className={styles.buttons}>
               {kActions.map(({ value, text }) => (
                 <Button key={value} disabled={chosen.length === 0} onClick={() => setWhat(value)}>
-                  {text}…
+                  {say(text)}…
                 </Button>
               ))}
               <Button look="quiet" onClick={() => choose((all ?? []).filter(({ role }) => role === 'trainee'))}>
-                Choose all trainees
+                {say('Choose all trainees')}
               </Button>
               <Button look="quiet" disabled={chosen.length === 0} onClick={() => setIds(new Set())}>
-                Choose none
+                {say('Choose none')}
               </Button>
             </div>
             {changed.isSuccess ? (
               <p role="status">
-                {formatCount(changed.data.accounts.length)}{' '}
-                {changed.data.accounts.length === 1 ? 'account was' : 'accounts were'} changed.
+                {say('{count, plural, one {# account was} other {# accounts were}} changed.', {
+                  count: changed.data.accounts.length,
+                })}
               </p>
             ) : null}
             <DataTable<Account>
               address=""
-              caption="Accounts"
+              caption={say('Accounts')}
               minWidth={560}
               rows={all}
               keyOf={({ id }) => id}
-              empty="No other accounts yet."
+              empty={say('No other accounts yet.')}
               filter={{
-                label: 'Filter by name, role, level or badge',
-                text: (one) => `${one.name} ${one.role} ${one.level} ${one.badge ?? ''}`,
+                label: say('Filter by name, role, level or badge'),
+                text: (one) => `${one.name} ${roleName(one.role)} ${one.level} ${one.badge ?? ''}`,
               }}
               columns={[
                 {
-                  name: 'Name',
+                  name: marked('Name'),
                   by: (one) => one.name,
                   cell: (one) => (
                     <label className={styles.choice}>
@@ -196,14 +211,14 @@ export function ChangePage() {
                     </label>
                   ),
                 },
-                { name: 'Role', by: (one) => one.role, cell: (one) => one.role },
-                { name: 'Level', by: (one) => one.level, cell: (one) => one.level || '–' },
+                { name: marked('Role'), by: (one) => roleName(one.role), cell: (one) => roleName(one.role) },
+                { name: marked('Level'), by: (one) => one.level, cell: (one) => one.level || '–' },
                 {
-                  name: 'Badge',
+                  name: marked('Badge'),
                   by: (one) => one.badge,
-                  cell: (one) => `${one.badge ?? '–'}${one.has_pin ? ', PIN' : ''}`,
+                  cell: (one) => `${one.badge ?? '–'}${one.has_pin ? `, ${say('PIN')}` : ''}`,
                 },
-                { name: 'State', by: (one) => one.state, cell: (one) => one.state },
+                { name: marked('State'), by: (one) => one.state, cell: (one) => say(kStates[one.state]) },
               ]}
             />
           </div>

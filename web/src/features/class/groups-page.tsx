@@ -1,8 +1,9 @@
 import { useMutation, useQuery, useQueryClient } from '@tanstack/react-query';
 import { useState } from 'react';
 import { cohortsQuery, groupRulesQuery, kGroupRoles, setGroupRule, type GroupLine } from '@/api';
-import { Button, Card, Field, Notice, Select } from '@/ui';
-import { formatDateTime } from '@/units';
+import { say } from '@/language';
+import { Button, Card, Field, Notice, roleName, Select } from '@/ui';
+import { formatCount, formatDateTime } from '@/units';
 import styles from './class.module.css';
 import { Frame } from './frame';
 
@@ -24,37 +25,37 @@ function Line({
 }) {
   return (
     <fieldset className={styles.line}>
-      <legend>Line {number}</legend>
+      <legend>{say('Line {number}', { number: formatCount(number) })}</legend>
       <Field
-        label="Group, as the provider names it"
+        label={say('Group, as the provider names it')}
         value={line.group}
         maxLength={200}
         onChange={(event) => onChange({ ...line, group: event.target.value })}
       />
       <Select
-        label="Role"
+        label={say('Role')}
         value={line.role}
-        options={kGroupRoles.map((role) => ({ value: role, text: role }))}
+        options={kGroupRoles.map((role) => ({ value: role, text: roleName(role) }))}
         onChange={(event) => {
           const role = event.target.value;
           onChange({ ...line, role, cohorts: joins(role) ? line.cohorts : [] });
         }}
       />
       <Select
-        label="Cohort"
+        label={say('Cohort')}
         value={line.cohorts[0] ?? ''}
         disabled={!joins(line.role)}
-        options={[{ value: '', text: 'none' }, ...cohorts.map(({ id, name }) => ({ value: id, text: name }))]}
+        options={[{ value: '', text: say('none') }, ...cohorts.map(({ id, name }) => ({ value: id, text: name }))]}
         onChange={(event) => onChange({ ...line, cohorts: event.target.value === '' ? [] : [event.target.value] })}
       />
       <Field
-        label="Level (optional)"
+        label={say('Level (optional)')}
         value={line.level}
         maxLength={64}
         onChange={(event) => onChange({ ...line, level: event.target.value })}
       />
-      <Button look="quiet" onClick={onRemove} label={`Remove line ${String(number)}`}>
-        Remove
+      <Button look="quiet" onClick={onRemove} label={say('Remove line {number}', { number: formatCount(number) })}>
+        {say('Remove')}
       </Button>
     </fieldset>
   );
@@ -82,7 +83,7 @@ function RuleForm({
   });
   const whole = lines.every(({ group }) => group.trim() !== '');
   return (
-    <Card title="Rule">
+    <Card title={say('Rule')}>
       <div className={styles.stack}>
         {lines.map((line, at) => (
           <Line
@@ -95,18 +96,23 @@ function RuleForm({
             onRemove={() => setLines(lines.filter((_, i) => i !== at))}
           />
         ))}
-        <Button onClick={() => setLines([...lines, kNewLine])}>Add a line</Button>
+        <Button onClick={() => setLines([...lines, kNewLine])}>{say('Add a line')}</Button>
         <Field
-          label="Disable whom the provider has not vouched for in so many days (optional)"
+          label={say('Disable whom the provider has not vouched for in so many days (optional)')}
           type="number"
           min={1}
           max={3650}
           value={days}
           onChange={(event) => setDays(event.target.value)}
         />
-        <Field label="Reason" value={reason} maxLength={500} onChange={(event) => setReason(event.target.value)} />
+        <Field
+          label={say('Reason')}
+          value={reason}
+          maxLength={500}
+          onChange={(event) => setReason(event.target.value)}
+        />
         {stored.isError ? (
-          <Notice tone="bad" title="The rule was not stored.">
+          <Notice tone="bad" title={say('The rule was not stored.')}>
             {stored.error.message}
           </Notice>
         ) : null}
@@ -115,7 +121,7 @@ function RuleForm({
           disabled={!whole || reason.trim() === '' || stored.isPending}
           onClick={() => stored.mutate({ lines, absent_days: days === '' ? null : Number(days), reason })}
         >
-          Store as a new version
+          {say('Store as a new version')}
         </Button>
       </div>
     </Card>
@@ -129,23 +135,32 @@ export function GroupsPage() {
   return (
     <Frame
       at="/class/groups"
-      lead="Whoever signs in with the identity provider gets role, cohort and level by the first line whose group has them; without a line, no account. An account that the rule made is disabled once no line fits. Administrators, and accounts that you make or disable by hand, are left alone."
+      lead={say(
+        'Whoever signs in with the identity provider gets role, cohort and level by the first line whose group has them; without a line, no account. An account that the rule made is disabled once no line fits. Administrators, and accounts that you make or disable by hand, are left alone.',
+      )}
     >
       {query.isError ? (
-        <Notice tone="bad" title="The rule could not be loaded." onRetry={() => void query.refetch()}>
+        <Notice tone="bad" title={say('The rule could not be loaded.')} onRetry={() => void query.refetch()}>
           {query.error.message}
         </Notice>
       ) : null}
       {query.data ? (
         <RuleForm key={newest?.version ?? 0} lines={newest?.rule.lines ?? []} absentDays={newest?.rule.absent_days} />
       ) : null}
-      <Card title="Versions">
-        {query.data?.versions.length === 0 ? <p>No rule yet: an administrator links each account by hand.</p> : null}
+      <Card title={say('Versions')}>
+        {query.data?.versions.length === 0 ? (
+          <p>{say('No rule yet: an administrator links each account by hand.')}</p>
+        ) : null}
         <ul className={styles.versions}>
           {query.data?.versions.map(({ version, rule, reason, made_utc_us, made_by }) => (
             <li key={version}>
-              Version {version}, {formatDateTime(made_utc_us)}, {made_by}: {rule.lines.length}{' '}
-              {rule.lines.length === 1 ? 'line' : 'lines'}. {reason}
+              {say('Version {version}, {time}, {name}: {count, plural, one {# line} other {# lines}}. {reason}', {
+                version: formatCount(version),
+                time: formatDateTime(made_utc_us),
+                name: made_by,
+                count: rule.lines.length,
+                reason,
+              })}
             </li>
           ))}
         </ul>

@@ -9,7 +9,8 @@ import {
   type ClassList,
   type ImportRow,
 } from '@/api';
-import { Badge, Button, Card, DataTable, Field, Notice, Select, useSettled } from '@/ui';
+import { marked, say, Sentence } from '@/language';
+import { Badge, Button, Card, DataTable, Field, Notice, roleName, Select, useSettled } from '@/ui';
 import { formatCount } from '@/units';
 import { Cards } from './cards';
 import styles from './class.module.css';
@@ -22,23 +23,27 @@ const kNew = 'new';
 function Preview({ rows }: { readonly rows: readonly ImportRow[] }) {
   return (
     <DataTable<ImportRow>
-      caption="Rows of the list"
-      order="as in the list"
+      caption={say('Rows of the list')}
+      order={say('as in the list')}
       minWidth={640}
       rows={rows}
       keyOf={({ line }) => String(line)}
-      empty="The list has no rows."
+      empty={say('The list has no rows.')}
       columns={[
-        { name: 'Name', by: (row) => row.name, cell: (row) => row.name || '–' },
-        { name: 'Line', by: (row) => row.line, cell: (row) => formatCount(row.line), number: true },
-        { name: 'Role', by: (row) => row.role, cell: (row) => row.role },
-        { name: 'Level', by: (row) => row.level, cell: (row) => row.level || '–' },
-        { name: 'Badge', by: (row) => row.badge, cell: (row) => `${row.badge ?? '–'}${row.has_pin ? ', PIN' : ''}` },
+        { name: marked('Name'), by: (row) => row.name, cell: (row) => row.name || '–' },
+        { name: marked('Line'), by: (row) => row.line, cell: (row) => formatCount(row.line), number: true },
+        { name: marked('Role'), by: (row) => roleName(row.role), cell: (row) => roleName(row.role) },
+        { name: marked('Level'), by: (row) => row.level, cell: (row) => row.level || '–' },
         {
-          name: 'Check',
+          name: marked('Badge'),
+          by: (row) => row.badge,
+          cell: (row) => `${row.badge ?? '–'}${row.has_pin ? `, ${say('PIN')}` : ''}`,
+        },
+        {
+          name: marked('Check'),
           by: (row) => row.error,
           cell: (row) =>
-            row.error === null ? <Badge tone="good">ready</Badge> : <Badge tone="bad">{row.error}</Badge>,
+            row.error === null ? <Badge tone="good">{say('ready')}</Badge> : <Badge tone="bad">{say(row.error)}</Badge>,
         },
       ]}
     />
@@ -52,13 +57,13 @@ function List({ text, onText }: { readonly text: string; readonly onText: (next:
   return (
     <div className={styles.stack}>
       <Field
-        label="CSV file"
+        label={say('CSV file')}
         type="file"
         accept=".csv,.txt,text/csv"
         onChange={(event) => void take(event.target.files?.[0])}
       />
       <div className={styles.field}>
-        <label htmlFor="class-list">Or paste the list; the first line names the columns</label>
+        <label htmlFor="class-list">{say('Or paste the list; the first line names the columns')}</label>
         <textarea
           id="class-list"
           rows={8}
@@ -69,8 +74,10 @@ function List({ text, onText }: { readonly text: string; readonly onText: (next:
         />
       </div>
       <p className={styles.muted}>
-        Columns: <strong>name</strong>, and optionally role (trainee if empty), level, badge and PIN (4 to 12 digits).
-        At most 200 rows.
+        <Sentence
+          text="Columns: <strong>name</strong>, and optionally role (trainee if empty), level, badge and PIN (4 to 12 digits). At most 200 rows."
+          parts={{ strong: (words) => <strong>{words}</strong> }}
+        />
       </p>
     </div>
   );
@@ -107,80 +114,88 @@ export function ImportPage() {
     rows !== undefined && rows.length > 0 && wrong === 0 && !check.isFetching && (cohort !== kNew || newCohort.trim());
   if (made.data?.applied)
     return (
-      <Frame at="/class" lead="All accounts were created.">
+      <Frame at="/class" lead={say('All accounts were created.')}>
         <Cards cards={made.data.rows.map(({ name, password, badge }) => ({ name, password: password ?? '', badge }))} />
       </Frame>
     );
   return (
     <Frame
       at="/class"
-      lead="Accounts for a whole class from a spreadsheet. The rows are checked first; then all accounts are created, or none."
+      lead={say(
+        'Accounts for a whole class from a spreadsheet. The rows are checked first; then all accounts are created, or none.',
+      )}
     >
       <div className={styles.two}>
-        <Card title="List">
+        <Card title={say('List')}>
           <List text={text} onText={setText} />
         </Card>
-        <Card title="For all rows">
+        <Card title={say('For all rows')}>
           <div className={styles.stack}>
             <Select
-              label="Cohort"
+              label={say('Cohort')}
               value={cohort}
               onChange={(event) => setCohort(event.target.value)}
               options={[
-                { value: '', text: 'none' },
+                { value: '', text: say('none') },
                 ...(cohorts.data?.cohorts ?? []).map(({ id, name }) => ({ value: id, text: name })),
-                { value: kNew, text: 'a new cohort…' },
+                { value: kNew, text: say('a new cohort…') },
               ]}
             />
             {cohort === kNew ? (
               <Field
-                label="Name of the new cohort"
+                label={say('Name of the new cohort')}
                 value={newCohort}
                 maxLength={100}
                 onChange={(event) => setNewCohort(event.target.value)}
               />
             ) : null}
             <Field
-              label="Level for rows without one (optional)"
+              label={say('Level for rows without one (optional)')}
               value={level}
               maxLength={64}
-              placeholder="PGY-1"
+              placeholder={say('PGY-1')}
               onChange={(event) => setLevel(event.target.value)}
             />
           </div>
         </Card>
       </div>
       {check.isError ? (
-        <Notice tone="bad" title="The list cannot be read.">
+        <Notice tone="bad" title={say('The list cannot be read.')}>
           {check.error.message}
         </Notice>
       ) : null}
       {made.isError ? (
-        <Notice tone="bad" title="No account was created.">
+        <Notice tone="bad" title={say('No account was created.')}>
           {made.error.message}
         </Notice>
       ) : null}
       {made.data && !made.data.applied ? (
-        <Notice tone="bad" title="No account was created.">
-          The accounts here have changed since the list was checked. Check the rows again.
+        <Notice tone="bad" title={say('No account was created.')}>
+          {say('The accounts here have changed since the list was checked. Check the rows again.')}
         </Notice>
       ) : null}
       {rows ? (
         <Card
-          title="Check"
+          title={say('Check')}
           aside={
             <span role="status" className={styles.muted}>
-              {formatCount(rows.length)} {rows.length === 1 ? 'row' : 'rows'}
-              {wrong > 0 ? `, ${formatCount(wrong)} with an error` : ', no errors'}
+              {wrong > 0
+                ? say('{count, plural, one {# row} other {# rows}}, {wrong} with an error', {
+                    count: rows.length,
+                    wrong: formatCount(wrong),
+                  })
+                : say('{count, plural, one {# row} other {# rows}}, no errors', { count: rows.length })}
             </span>
           }
         >
           <div className={styles.stack}>
             <Preview rows={(made.data ?? check.data)?.rows ?? rows} />
             <div className={styles.go}>
-              {wrong > 0 ? <span>Correct the rows with an error; until then nothing is created.</span> : null}
+              {wrong > 0 ? <span>{say('Correct the rows with an error; until then nothing is created.')}</span> : null}
               <Button look="solid" disabled={!ready || made.isPending} onClick={() => made.mutate()}>
-                {made.isPending ? 'Creating…' : `Create ${formatCount(rows.length)} accounts`}
+                {made.isPending
+                  ? say('Creating…')
+                  : say('Create {count, plural, one {# account} other {# accounts}}', { count: rows.length })}
               </Button>
             </div>
           </div>

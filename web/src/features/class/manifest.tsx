@@ -1,5 +1,6 @@
 /** Pages of a class: many accounts at once. */
 import { lazy } from 'react';
+import { marked } from '@/language';
 import type { Feature } from '@/ui';
 
 const index = () => import('./index');
@@ -9,7 +10,7 @@ const ImportPage = lazy(() => index().then(({ ImportPage: page }) => ({ default:
 
 export const feature: Feature = {
   // An administrator's menu is long: there it is linked from the accounts.
-  menu: [{ to: '/class', name: 'Class', roles: ['director'], order: 58 }],
+  menu: [{ to: '/class', name: marked('Class'), roles: ['director'], order: 58 }],
   pages: [
     { path: '/class', show: () => <ImportPage /> },
     { path: '/class/change', show: () => <ChangePage /> },

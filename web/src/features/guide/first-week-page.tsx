@@ -1,3 +1,4 @@
+import { say } from '@/language';
 import { Card } from '@/ui';
 import { kFirstWeek } from './first-week';
 import styles from './guide.module.css';
@@ -8,11 +9,13 @@ export function FirstWeekPage() {
   return (
     <>
       <p className={styles.for}>
-        A residency’s first week: 24 residents, two kiosks, one certificate.
-        {isMade('week-import') ? ' The pictures were made by a program, on a real server with simulated hands.' : null}
+        {say('A residency’s first week: 24 residents, two kiosks, one certificate.')}
+        {isMade('week-import')
+          ? ` ${say('The pictures were made by a program, on a real server with simulated hands.')}`
+          : null}
       </p>
       {kFirstWeek.map(({ name, steps }) => (
-        <Card key={name} title={name}>
+        <Card key={name} title={say(name)}>
           <Steps of={steps} />
         </Card>
       ))}

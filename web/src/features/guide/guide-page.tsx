@@ -1,6 +1,7 @@
 import { useQuery } from '@tanstack/react-query';
 import { Link } from 'wouter';
 import { sessionQuery } from '@/api';
+import { marked, say } from '@/language';
 import { Card, useTitle } from '@/ui';
 import styles from './guide.module.css';
 import { kPages, type GuidePage as Page } from './pages';
@@ -10,23 +11,23 @@ import { Steps } from './steps';
 
 /** Pages beside those of the roles. */
 const kMore = [
-  { at: 'first-week', name: 'First week', Content: FirstWeekPage },
-  { at: 'scripts', name: 'Scripts', Content: ScriptsPage },
+  { at: 'first-week', name: marked('First week'), Content: FirstWeekPage },
+  { at: 'scripts', name: marked('Scripts'), Content: ScriptsPage },
 ] as const;
 
 function RolePage({ page }: { readonly page: Page }) {
   return (
     <>
-      <p className={styles.for}>{page.purpose}</p>
-      <Card title="Steps">
+      <p className={styles.for}>{say(page.purpose)}</p>
+      <Card title={say('Steps')}>
         <Steps of={page.steps} />
       </Card>
-      <Card title="Terms">
+      <Card title={say('Terms')}>
         <dl className={styles.terms}>
           {page.terms.map(([word, meaning]) => (
             <div key={word}>
-              <dt>{word}</dt>
-              <dd>{meaning}</dd>
+              <dt>{say(word)}</dt>
+              <dd>{say(meaning)}</dd>
             </div>
           ))}
         </dl>
@@ -41,27 +42,27 @@ export function GuidePage({ role }: { readonly role: string | undefined }) {
   const page = kPages.find((one) => one.role === (role ?? own)) ?? kPages[0];
   const more = kMore.find(({ at }) => at === role);
   const title = more?.name ?? page?.name;
-  useTitle(title === undefined ? 'Guide' : `Guide: ${title}`);
+  useTitle(title === undefined ? say('Guide') : say('Guide: {title}', { title: say(title) }));
   if (!page) return null;
   return (
     <div className={styles.page}>
       <div>
-        <h1>Guide</h1>
-        <p className={styles.lead}>Choose a role:</p>
+        <h1>{say('Guide')}</h1>
+        <p className={styles.lead}>{say('Choose a role:')}</p>
       </div>
-      <nav aria-label="Roles" className={styles.tabs}>
+      <nav aria-label={say('Roles')} className={styles.tabs}>
         {kPages.map((one) => (
           <Link
             key={one.role}
             href={`/guide/${one.role}`}
             aria-current={!more && one.role === page.role ? 'page' : undefined}
           >
-            {one.name}
+            {say(one.name)}
           </Link>
         ))}
         {kMore.map(({ at, name }) => (
           <Link key={at} href={`/guide/${at}`} aria-current={more?.at === at ? 'page' : undefined}>
-            {name}
+            {say(name)}
           </Link>
         ))}
       </nav>

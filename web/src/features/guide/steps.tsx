@@ -1,4 +1,5 @@
 import { Link } from 'wouter';
+import { say } from '@/language';
 import styles from './guide.module.css';
 import type { Step } from './pages';
 
@@ -14,15 +15,15 @@ export function Steps({ of }: { readonly of: readonly Step[] }) {
     <ol className={styles.steps}>
       {of.map(({ title, text, to, picture }) => (
         <li key={title}>
-          <strong>{title}</strong>
+          <strong>{say(title)}</strong>
           <p>
-            {text} {to ? <Link href={to.href}>{to.name}</Link> : null}
+            {say(text)} {to ? <Link href={to.href}>{say(to.name)}</Link> : null}
           </p>
           {picture && addressOf(picture.name) ? (
             <img
               className={styles.picture}
               src={addressOf(picture.name)}
-              alt={picture.shows}
+              alt={say(picture.shows)}
               width={1200}
               height={750}
               loading="lazy"

@@ -1,32 +1,45 @@
 import { useQuery } from '@tanstack/react-query';
 import { Link } from 'wouter';
 import { outboxQuery, type Outbox, type OutboxDelivery } from '@/api';
+import { marked, say, Sentence } from '@/language';
 import { Badge, Card, DataTable, Facts, Notice, useTitle } from '@/ui';
 import { formatCount, formatDateTime } from '@/units';
 import styles from './notifications.module.css';
 import { WebhooksCard } from './webhooks-card';
 
 const kTones = { waiting: 'neutral', sent: 'good', 'given up': 'bad', withdrawn: 'neutral' } as const;
+const kStates: Readonly<Record<OutboxDelivery['state'], string>> = {
+  waiting: marked('waiting'),
+  sent: marked('sent'),
+  'given up': marked('given up'),
+  withdrawn: marked('withdrawn'),
+};
 
 function MailServerCard({ mail }: Pick<Outbox, 'mail'>) {
   return (
-    <Card title="Mail server">
+    <Card title={say('Mail server')}>
       {mail ? (
         <div className={styles.stack}>
           <Facts
             facts={[
-              { name: 'Server', value: mail.server },
-              { name: 'Sender', value: mail.from },
-              { name: 'Recipients', value: mail.domains.length > 0 ? mail.domains.join(', ') : 'any domain' },
+              { name: say('Server'), value: mail.server },
+              { name: say('Sender'), value: mail.from },
+              { name: say('Recipients'), value: mail.domains.length > 0 ? mail.domains.join(', ') : say('any domain') },
             ]}
           />
           <p className={styles.muted}>
-            Send a test to your own address on <Link href="/account/notifications">Notifications</Link>.
+            <Sentence
+              text="Send a test to your own address on <link>Notifications</link>."
+              parts={{ link: (words) => <Link href="/account/notifications">{words}</Link> }}
+            />
           </p>
         </div>
       ) : (
         <p>
-          No mail server is stated. Start the server with <code>--mail FILE</code>.
+          <Sentence
+            text="No mail server is stated. Start the server with <code>--mail FILE</code>."
+            parts={{ code: (words) => <code>{words}</code> }}
+          />
         </p>
       )}
     </Card>
@@ -35,36 +48,44 @@ function MailServerCard({ mail }: Pick<Outbox, 'mail'>) {
 
 function DeliveriesCard({ outbox }: { readonly outbox: Outbox }) {
   return (
-    <Card title="Deliveries">
+    <Card title={say('Deliveries')}>
       <div className={styles.stack}>
         <p role="status">
-          {formatCount(outbox.waiting)} waiting, {formatCount(outbox.sent_within_day)} sent within a day.
+          {say('{waiting} waiting, {sent} sent within a day.', {
+            waiting: formatCount(outbox.waiting),
+            sent: formatCount(outbox.sent_within_day),
+          })}
         </p>
         <DataTable<OutboxDelivery>
-          caption="Deliveries"
-          order="newest first"
+          caption={say('Deliveries')}
+          order={say('newest first')}
           minWidth={720}
           rows={outbox.deliveries}
           keyOf={({ id }) => id}
-          empty="Nothing was sent yet."
+          empty={say('Nothing was sent yet.')}
           columns={[
-            { name: 'Event at', by: (one) => one.made_utc_us, cell: (one) => formatDateTime(one.made_utc_us) },
+            { name: marked('Event at'), by: (one) => one.made_utc_us, cell: (one) => formatDateTime(one.made_utc_us) },
             {
-              name: 'By',
+              name: marked('By'),
               by: (one) => one.channel,
-              cell: (one) => (one.channel === 'mail' ? 'e-mail' : 'webhook'),
+              cell: (one) => (one.channel === 'mail' ? say('e-mail') : say('webhook')),
             },
             {
-              name: 'State',
-              by: (one) => one.state,
-              cell: (one) => <Badge tone={kTones[one.state]}>{one.state}</Badge>,
+              name: marked('State'),
+              by: (one) => say(kStates[one.state]),
+              cell: (one) => <Badge tone={kTones[one.state]}>{say(kStates[one.state])}</Badge>,
             },
-            { name: 'Attempts', by: (one) => one.attempts, cell: (one) => formatCount(one.attempts), number: true },
             {
-              name: 'Next attempt',
+              name: marked('Attempts'),
+              by: (one) => one.attempts,
+              cell: (one) => formatCount(one.attempts),
+              number: true,
+            },
+            {
+              name: marked('Next attempt'),
               cell: (one) => (one.state === 'waiting' ? formatDateTime(one.due_utc_us) : '–'),
             },
-            { name: 'Reason', cell: (one) => one.error },
+            { name: marked('Reason'), cell: (one) => say(one.error) },
           ]}
         />
       </div>
@@ -74,26 +95,33 @@ function DeliveriesCard({ outbox }: { readonly outbox: Outbox }) {
 
 /** Mail server, webhooks and deliveries, for administrators. */
 export function MailPage() {
-  useTitle('Mail and webhooks');
+  useTitle(say('Mail and webhooks'));
   const query = useQuery(outboxQuery);
   const outbox = query.data;
   return (
     <div className={styles.page}>
       <div>
-        <h1>Mail and webhooks</h1>
+        <h1>{say('Mail and webhooks')}</h1>
         <p className={styles.lead}>
-          How people and other systems are told of events. Each person chooses on{' '}
-          <Link href="/account/notifications">Notifications</Link>.
+          <Sentence
+            text="How people and other systems are told of events. Each person chooses on <link>Notifications</link>."
+            parts={{ link: (words) => <Link href="/account/notifications">{words}</Link> }}
+          />
         </p>
       </div>
       {query.isError ? (
-        <Notice tone="bad" title="The deliveries could not be loaded." onRetry={() => void query.refetch()}>
+        <Notice tone="bad" title={say('The deliveries could not be loaded.')} onRetry={() => void query.refetch()}>
           {query.error.message}
         </Notice>
       ) : null}
       {outbox && outbox.given_up_within_week > 0 ? (
-        <Notice tone="bad" title={`${formatCount(outbox.given_up_within_week)} deliveries were given up this week.`}>
-          The list below says why. Each is in the audit trail.
+        <Notice
+          tone="bad"
+          title={say('{count, plural, one {# delivery was} other {# deliveries were}} given up this week.', {
+            count: outbox.given_up_within_week,
+          })}
+        >
+          {say('The list below says why. Each is in the audit trail.')}
         </Notice>
       ) : null}
       {outbox ? (

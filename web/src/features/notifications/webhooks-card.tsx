@@ -9,6 +9,7 @@ import {
   type NotificationKind,
   type Webhook,
 } from '@/api';
+import { marked, say } from '@/language';
 import { AskDialog, Button, Card, DataTable, Field, Notice } from '@/ui';
 import { formatDateTime } from '@/units';
 import { kKindNames } from './labels';
@@ -34,7 +35,7 @@ function NewWebhook() {
     <>
       <form className={styles.form} onSubmit={submit}>
         <Field
-          label="Address (https)"
+          label={say('Address (https)')}
           type="url"
           required
           maxLength={2000}
@@ -42,7 +43,7 @@ function NewWebhook() {
           onChange={(event) => setUrl(event.target.value)}
         />
         <fieldset className={styles.kinds}>
-          <legend>Events</legend>
+          <legend>{say('Events')}</legend>
           {kWebhookKinds.map((kind) => (
             <label key={kind}>
               <input
@@ -52,25 +53,25 @@ function NewWebhook() {
                   setKinds(target.checked ? [...kinds, kind] : kinds.filter((one) => one !== kind))
                 }
               />
-              {kKindNames[kind]}
+              {say(kKindNames[kind])}
             </label>
           ))}
         </fieldset>
         <Button look="solid" type="submit" disabled={added.isPending || url.trim() === '' || kinds.length === 0}>
-          Add webhook
+          {say('Add webhook')}
         </Button>
       </form>
       {added.isError ? (
-        <Notice tone="bad" title="The webhook was not added.">
+        <Notice tone="bad" title={say('The webhook was not added.')}>
           {added.error.message}
         </Notice>
       ) : null}
       {added.data ? (
-        <Notice tone="warn" title="Secret of the webhook">
+        <Notice tone="warn" title={say('Secret of the webhook')}>
           <p className={styles.secret} data-part="secret">
             {added.data.secret}
           </p>
-          <p>Copy the secret into the receiver now: it is shown only once.</p>
+          <p>{say('Copy the secret into the receiver now: it is shown only once.')}</p>
         </Notice>
       ) : null}
     </>
@@ -85,41 +86,42 @@ export function WebhooksCard({ webhooks }: { readonly webhooks: readonly Webhook
   const tested = useMutation({ mutationFn: testWebhook, onSuccess: fresh });
   const removed = useMutation({ mutationFn: removeWebhook, onSuccess: fresh });
   return (
-    <Card title="Webhooks">
+    <Card title={say('Webhooks')}>
       <div className={styles.stack}>
         <p className={styles.muted}>
-          The server sends a signed request (Standard Webhooks, HMAC-SHA-256) to each address when something happens. It
-          contains the kind of event, its time and the address of a page, no names.
+          {say(
+            'The server sends a signed request (Standard Webhooks, HMAC-SHA-256) to each address when something happens. It contains the kind of event, its time and the address of a page, no names.',
+          )}
         </p>
         {tested.isError ? (
-          <Notice tone="bad" title="The test was not queued.">
+          <Notice tone="bad" title={say('The test was not queued.')}>
             {tested.error.message}
           </Notice>
         ) : null}
         <DataTable<Webhook>
-          caption="Webhooks"
-          order="oldest first"
+          caption={say('Webhooks')}
+          order={say('oldest first')}
           minWidth={640}
           rows={webhooks}
           keyOf={({ id }) => id}
-          empty="There are no webhooks."
+          empty={say('There are no webhooks.')}
           columns={[
-            { name: 'Address', by: (one) => one.url, cell: (one) => one.url },
-            { name: 'Events', cell: (one) => one.kinds.map((kind) => kKindNames[kind]).join(', ') },
-            { name: 'Added', by: (one) => one.made_utc_us, cell: (one) => formatDateTime(one.made_utc_us) },
+            { name: marked('Address'), by: (one) => one.url, cell: (one) => one.url },
+            { name: marked('Events'), cell: (one) => one.kinds.map((kind) => say(kKindNames[kind])).join(', ') },
+            { name: marked('Added'), by: (one) => one.made_utc_us, cell: (one) => formatDateTime(one.made_utc_us) },
             {
-              name: <span className="hidden-visually">Actions</span>,
+              name: <span className="hidden-visually">{say('Actions')}</span>,
               cell: (one) => (
                 <span className={styles.buttons}>
                   <Button
-                    label={`Send a test to ${one.url}`}
+                    label={say('Send a test to {url}', { url: one.url })}
                     disabled={tested.isPending}
                     onClick={() => tested.mutate(one.id)}
                   >
-                    Send a test
+                    {say('Send a test')}
                   </Button>
-                  <Button label={`Remove ${one.url}`} onClick={() => setAsked(one)}>
-                    Remove
+                  <Button label={say('Remove {name}', { name: one.url })} onClick={() => setAsked(one)}>
+                    {say('Remove')}
                   </Button>
                 </span>
               ),
@@ -130,12 +132,12 @@ export function WebhooksCard({ webhooks }: { readonly webhooks: readonly Webhook
       </div>
       {asked ? (
         <AskDialog
-          title="Remove this webhook?"
-          action="Remove"
+          title={say('Remove this webhook?')}
+          action={say('Remove')}
           onAction={() => removed.mutateAsync(asked.id)}
           onClose={() => setAsked(null)}
         >
-          <p>{asked.url} is no longer called. What waits for it is withdrawn.</p>
+          <p>{say('{url} is no longer called. What waits for it is withdrawn.', { url: asked.url })}</p>
         </AskDialog>
       ) : null}
     </Card>

@@ -2,6 +2,7 @@ import { useMutation } from '@tanstack/react-query';
 import { useState, type FormEvent } from 'react';
 import { Link, useLocation } from 'wouter';
 import { makeStudy } from '@/api';
+import { say } from '@/language';
 import { Button, Card, Field, Notice, useTitle } from '@/ui';
 import { formatCount } from '@/units';
 import { idOf, kBlank, participantsOf, studyOf, type Draft } from './draft';
@@ -12,15 +13,15 @@ function People({ draft, set }: { readonly draft: Draft; readonly set: (changes:
   const { participants, faults } = participantsOf(draft.participants);
   return (
     <Card
-      title="Participants"
+      title={say('Participants')}
       aside={
         <span className={styles.count} role="status">
-          {formatCount(participants.length)} valid
+          {say('{count} valid', { count: formatCount(participants.length) })}
         </span>
       }
     >
       <div className={styles.people}>
-        <label htmlFor="participants">One per line: pseudonym, level, years of experience</label>
+        <label htmlFor="participants">{say('One per line: pseudonym, level, years of experience')}</label>
         <textarea
           id="participants"
           rows={8}
@@ -31,8 +32,9 @@ function People({ draft, set }: { readonly draft: Draft; readonly set: (changes:
           onChange={(event) => set({ participants: event.target.value })}
         />
         <p id="participants-hint" className={styles.hint}>
-          Use pseudonyms only; the names are stored elsewhere. You can enrol more participants later. Add “simulated” to
-          a line for a simulated surgeon.
+          {say(
+            'Use pseudonyms only; the names are stored elsewhere. You can enrol more participants later. Add “simulated” to a line for a simulated surgeon.',
+          )}
         </p>
         <ul className={styles.faults} aria-live="polite">
           {faults.map((fault) => (
@@ -46,7 +48,7 @@ function People({ draft, set }: { readonly draft: Draft; readonly set: (changes:
 
 /** Scenarios, repeats, order and participants of a new study. */
 export function NewStudyPage() {
-  useTitle('New study');
+  useTitle(say('New study'));
   const [draft, setDraft] = useState<Draft>(kBlank);
   const [, go] = useLocation();
   const set = (changes: Partial<Draft>) => setDraft((before) => ({ ...before, ...changes }));
@@ -60,20 +62,20 @@ export function NewStudyPage() {
   return (
     <form className={styles.page} onSubmit={submit}>
       <p className={styles.back}>
-        <Link href="/studies">← Studies</Link>
+        <Link href="/studies">← {say('Studies')}</Link>
       </p>
-      <h1>New study</h1>
-      <Card title="Name">
+      <h1>{say('New study')}</h1>
+      <Card title={say('Name')}>
         <div className={styles.names}>
           <Field
-            label="Title"
+            label={say('Title')}
             value={draft.title}
             maxLength={200}
             required
             onChange={(event) => set({ title: event.target.value })}
           />
           <Field
-            label="Short name for stations"
+            label={say('Short name for stations')}
             value={draft.id}
             maxLength={32}
             placeholder={idOf(draft.title) || 'spine-study-1'}
@@ -88,7 +90,7 @@ export function NewStudyPage() {
       <Protocol draft={draft} set={set} />
       <People draft={draft} set={set} />
       {made.isError ? (
-        <Notice tone="bad" title="The study was not created.">
+        <Notice tone="bad" title={say('The study was not created.')}>
           {made.error.message}
         </Notice>
       ) : null}
@@ -98,10 +100,10 @@ export function NewStudyPage() {
             ? 'faults' in ready
               ? ready.faults[0]
               : ''
-            : `${formatCount(trials)} trials for each participant.`}
+            : say('{count} trials for each participant.', { count: formatCount(trials) })}
         </p>
         <Button look="solid" type="submit" disabled={!('study' in ready) || made.isPending}>
-          {made.isPending ? 'Creating…' : 'Create study'}
+          {made.isPending ? say('Creating…') : say('Create study')}
         </Button>
       </div>
     </form>

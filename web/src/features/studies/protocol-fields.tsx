@@ -1,4 +1,5 @@
 import { useState, type ChangeEvent } from 'react';
+import { marked, say, Sentence } from '@/language';
 import { Button, Card, Field, Notice } from '@/ui';
 import { kTuned, type Draft, type Tuned, type Uploaded } from './draft';
 import styles from './new-study.module.css';
@@ -12,15 +13,15 @@ const kMost_bytes = 1_000_000;
 
 /** A scenario file, or a sentence why it is none; the numbers in it are the server's to judge. */
 async function read(file: File): Promise<Uploaded | string> {
-  if (file.size > kMost_bytes) return `${file.name}: too large for a scenario (limit: 1 MB).`;
+  if (file.size > kMost_bytes) return say('{file}: too large for a scenario (limit: 1 MB).', { file: file.name });
   try {
     const json: unknown = JSON.parse(await file.text());
     const scenario = json as Record<string, unknown>;
     if (typeof json === 'object' && json !== null && scenario.format === 'tractus-scenario/1')
       return { file: file.name, scenario };
-    return `${file.name}: not a tractus-scenario/1 file.`;
+    return say('{file}: not a tractus-scenario/1 file.', { file: file.name });
   } catch {
-    return `${file.name}: not valid JSON.`;
+    return say('{file}: not valid JSON.', { file: file.name });
   }
 }
 
@@ -36,9 +37,9 @@ export function Scenarios({ draft, set }: Props) {
     set({ uploaded: [...draft.uploaded, ...results.filter((one) => typeof one !== 'string')] });
   };
   return (
-    <Card title="Scenarios">
+    <Card title={say('Scenarios')}>
       <fieldset className={styles.choices}>
-        <legend>Built-in scenarios</legend>
+        <legend>{say('Built-in scenarios')}</legend>
         {kTuned.map(({ id, label }) => (
           <label key={id}>
             <input
@@ -46,13 +47,16 @@ export function Scenarios({ draft, set }: Props) {
               checked={draft.tuned.includes(id)}
               onChange={(event) => chosen(id, event.target.checked)}
             />{' '}
-            {label}
+            {say(label)}
           </label>
         ))}
       </fieldset>
       <div className={styles.upload}>
         <label htmlFor="scenario-files">
-          Custom scenarios (JSON files created with <code>tractus scenario new</code>)
+          <Sentence
+            text="Custom scenarios (JSON files created with <code>tractus scenario new</code>)"
+            parts={{ code: (words) => <code>{words}</code> }}
+          />
         </label>
         <input
           id="scenario-files"
@@ -69,16 +73,16 @@ export function Scenarios({ draft, set }: Props) {
               </span>
               <Button
                 look="quiet"
-                label={`Remove ${file}`}
+                label={say('Remove {name}', { name: file })}
                 onClick={() => set({ uploaded: draft.uploaded.filter((_, at) => at !== i) })}
               >
-                Remove
+                {say('Remove')}
               </Button>
             </li>
           ))}
         </ul>
         {refused.length > 0 ? (
-          <Notice tone="warn" title="Rejected files:">
+          <Notice tone="warn" title={say('Rejected files:')}>
             {refused.join(' ')}
           </Notice>
         ) : null}
@@ -90,28 +94,30 @@ export function Scenarios({ draft, set }: Props) {
 const kOrders = [
   {
     id: 'random',
-    label: 'Random',
-    text: 'Each participant gets all trials in an individual random order, as in the published study.',
+    label: marked('Random'),
+    text: marked('Each participant gets all trials in an individual random order, as in the published study.'),
   },
   {
     id: 'balanced',
-    label: 'Balanced',
-    text: 'In blocks that contain each scenario once, ordered by Williams squares: across participants, each scenario follows each other one equally often.',
+    label: marked('Balanced'),
+    text: marked(
+      'In blocks that contain each scenario once, ordered by Williams squares: across participants, each scenario follows each other one equally often.',
+    ),
   },
 ] as const;
 
 const kRepeats = [
-  { id: 'at_end', label: 'at the end of the participant’s order' },
-  { id: 'at_once', label: 'as the participant’s next trial' },
-  { id: 'never', label: 'never' },
+  { id: 'at_end', label: marked('at the end of the participant’s order') },
+  { id: 'at_once', label: marked('as the participant’s next trial') },
+  { id: 'never', label: marked('never') },
 ] as const;
 
 export function Protocol({ draft, set }: Props) {
   return (
-    <Card title="Protocol">
+    <Card title={say('Protocol')}>
       <div className={styles.protocol}>
         <Field
-          label="Repeats of each scenario"
+          label={say('Repeats of each scenario')}
           type="number"
           min={1}
           max={20}
@@ -121,7 +127,7 @@ export function Protocol({ draft, set }: Props) {
           onChange={(event) => set({ repeats: event.target.value })}
         />
         <fieldset className={styles.orders}>
-          <legend>Order</legend>
+          <legend>{say('Order')}</legend>
           {kOrders.map(({ id, label, text }) => (
             <label key={id}>
               <input
@@ -131,13 +137,13 @@ export function Protocol({ draft, set }: Props) {
                 onChange={() => set({ ordering: id })}
               />
               <span>
-                <strong>{label}.</strong> {text}
+                <strong>{say(label)}.</strong> {say(text)}
               </span>
             </label>
           ))}
         </fieldset>
         <div className={styles.select}>
-          <label htmlFor="on-invalid">Repeat an invalid trial</label>
+          <label htmlFor="on-invalid">{say('Repeat an invalid trial')}</label>
           <select
             id="on-invalid"
             value={draft.onInvalid}
@@ -148,7 +154,7 @@ export function Protocol({ draft, set }: Props) {
           >
             {kRepeats.map(({ id, label }) => (
               <option key={id} value={id}>
-                {label}
+                {say(label)}
               </option>
             ))}
           </select>

@@ -1,11 +1,13 @@
 import { useQuery } from '@tanstack/react-query';
 import { Link } from 'wouter';
 import { studiesQuery, type StudySummary } from '@/api';
+import { marked, say } from '@/language';
 import { Badge, DataTable, Notice, Progress, useTitle, type DataColumn } from '@/ui';
 import { formatCount, formatDateTime, isoDateTime } from '@/units';
 import styles from './studies-page.module.css';
 
 type State = 'complete' | 'paused' | 'running';
+const kStates = { complete: marked('complete'), paused: marked('paused'), running: marked('running') } as const;
 const kTones = { complete: 'good', paused: 'warn', running: 'accent' } as const;
 
 const stateOf = (study: StudySummary): State =>
@@ -13,7 +15,7 @@ const stateOf = (study: StudySummary): State =>
 
 const kColumns: readonly DataColumn<StudySummary>[] = [
   {
-    name: 'Study',
+    name: marked('Study'),
     by: (study) => study.title,
     cell: (study) => (
       <>
@@ -24,31 +26,38 @@ const kColumns: readonly DataColumn<StudySummary>[] = [
       </>
     ),
   },
-  { name: 'State', by: stateOf, cell: (study) => <Badge tone={kTones[stateOf(study)]}>{stateOf(study)}</Badge> },
   {
-    name: 'Participants',
+    name: marked('State'),
+    by: (study) => say(kStates[stateOf(study)]),
+    cell: (study) => <Badge tone={kTones[stateOf(study)]}>{say(kStates[stateOf(study)])}</Badge>,
+  },
+  {
+    name: marked('Participants'),
     by: (study) => study.participants,
     cell: (study) => formatCount(study.participants),
     number: true,
   },
   {
-    name: 'Trials done',
+    name: marked('Trials done'),
     by: (study) => study.done,
     cell: (study) => (
       <span className={styles.progress}>
         <Progress
           done={study.done}
           of={study.planned}
-          label={`${formatCount(study.done)} of ${formatCount(study.planned)} trials done`}
+          label={say('{done} of {planned} trials done', {
+            done: formatCount(study.done),
+            planned: formatCount(study.planned),
+          })}
         />
         <span>
-          {formatCount(study.done)} of {formatCount(study.planned)}
+          {say('{done} of {planned}', { done: formatCount(study.done), planned: formatCount(study.planned) })}
         </span>
       </span>
     ),
   },
   {
-    name: 'Created',
+    name: marked('Created'),
     by: (study) => study.made_utc_us,
     cell: (study) => (
       <>
@@ -59,21 +68,21 @@ const kColumns: readonly DataColumn<StudySummary>[] = [
 ];
 
 export function StudiesPage() {
-  useTitle('Studies');
+  useTitle(say('Studies'));
   const query = useQuery(studiesQuery);
   return (
     <>
       <div className={styles.head}>
-        <h1>Studies</h1>
+        <h1>{say('Studies')}</h1>
         <Link href="/studies/new" className={styles.make}>
-          New study
+          {say('New study')}
         </Link>
       </div>
       {query.isError ? (
         <div className={styles.error}>
           <Notice
             tone="bad"
-            title={query.data ? 'The list could not be refreshed.' : 'The studies could not be loaded.'}
+            title={query.data ? say('The list could not be refreshed.') : say('The studies could not be loaded.')}
             onRetry={() => void query.refetch()}
           >
             {query.error.message}
@@ -81,19 +90,20 @@ export function StudiesPage() {
         </div>
       ) : null}
       {query.data?.studies.length === 0 ? (
-        <Notice title="No studies yet.">
-          In a study, all participants do the same scenarios, blinded, each in an individual order. Create the first
-          one.
+        <Notice title={say('No studies yet.')}>
+          {say(
+            'In a study, all participants do the same scenarios, blinded, each in an individual order. Create the first one.',
+          )}
         </Notice>
       ) : query.data || query.isPending ? (
         <DataTable
-          caption="Studies"
-          order="newest first"
+          caption={say('Studies')}
+          order={say('newest first')}
           className={styles.frame}
           rows={query.data?.studies}
           keyOf={({ id }) => id}
-          empty="No studies yet."
-          filter={{ label: 'Filter by title or short name', text: (study) => `${study.title} ${study.id}` }}
+          empty={say('No studies yet.')}
+          filter={{ label: say('Filter by title or short name'), text: (study) => `${study.title} ${study.id}` }}
           columns={kColumns}
         />
       ) : null}

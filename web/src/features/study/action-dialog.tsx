@@ -1,4 +1,5 @@
 import { markTrialInvalid, releaseParticipant, setParticipantState, setStudyState, type Study } from '@/api';
+import { say } from '@/language';
 import { ReasonDialog } from '@/ui';
 import { formatCount } from '@/units';
 
@@ -20,51 +21,62 @@ function dialogOf(study: string, action: StudyAction): Confirmation {
   switch (action.kind) {
     case 'pause-study':
       return {
-        title: 'Pause the study',
-        action: 'Pause',
+        title: say('Pause the study'),
+        action: say('Pause'),
         reasonNeeded: false,
         act: (reason) => setStudyState(study, 'paused', reason),
-        text: 'No station receives a further trial until the study is resumed. Trials that stations have already reserved can still be done and uploaded.',
+        text: say(
+          'No station receives a further trial until the study is resumed. Trials that stations have already reserved can still be done and uploaded.',
+        ),
       };
     case 'resume-study':
       return {
-        title: 'Resume the study',
-        action: 'Resume',
+        title: say('Resume the study'),
+        action: say('Resume'),
         reasonNeeded: false,
         act: (reason) => setStudyState(study, 'running', reason),
-        text: 'Stations receive trials again.',
+        text: say('Stations receive trials again.'),
       };
     case 'pause':
       return {
-        title: `Pause ${action.participant}`,
-        action: 'Pause',
+        title: say('Pause {name}', { name: action.participant }),
+        action: say('Pause'),
         reasonNeeded: false,
         act: (reason) => setParticipantState(study, action.participant, 'paused', reason),
-        text: 'No station receives a further trial of this participant. A trial that a station has already reserved can still be uploaded.',
+        text: say(
+          'No station receives a further trial of this participant. A trial that a station has already reserved can still be uploaded.',
+        ),
       };
     case 'resume':
       return {
-        title: `Resume ${action.participant}`,
-        action: 'Resume',
+        title: say('Resume {name}', { name: action.participant }),
+        action: say('Resume'),
         reasonNeeded: false,
         act: (reason) => setParticipantState(study, action.participant, 'running', reason),
-        text: 'Stations receive the trials of this participant again.',
+        text: say('Stations receive the trials of this participant again.'),
       };
     case 'release':
       return {
-        title: `Release the reservation for ${action.participant}`,
-        action: 'Release',
+        title: say('Release the reservation for {name}', { name: action.participant }),
+        action: say('Release'),
         reasonNeeded: true,
         act: (reason) => releaseParticipant(study, action.participant, reason),
-        text: 'Use this for a station that will not return. The next station that asks receives the reserved trial. If the station returns after all, its recordings are kept.',
+        text: say(
+          'Use this for a station that will not return. The next station that asks receives the reserved trial. If the station returns after all, its recordings are kept.',
+        ),
       };
     case 'invalid':
       return {
-        title: `Mark trial ${formatCount(action.number)} of ${action.participant} as invalid`,
-        action: 'Mark as invalid',
+        title: say('Mark trial {number} of {name} as invalid', {
+          number: formatCount(action.number),
+          name: action.participant,
+        }),
+        action: say('Mark as invalid'),
         reasonNeeded: true,
         act: (reason) => markTrialInvalid(study, action.trial, reason),
-        text: 'The trial is kept with your name and reason. This cannot be undone. The trial is repeated as the study specifies.',
+        text: say(
+          'The trial is kept with your name and reason. This cannot be undone. The trial is repeated as the study specifies.',
+        ),
       };
   }
 }

@@ -1,4 +1,5 @@
 import type { StudyEvent } from '@/api';
+import { say } from '@/language';
 import { Card, Notice, Skeleton } from '@/ui';
 import { formatClock, isoDateTime } from '@/units';
 import styles from './activity.module.css';
@@ -13,14 +14,14 @@ interface Props {
 /** The latest changes, who and when; the list has a height of its own, so that nothing jumps while it grows. */
 export function Activity({ events, error, retry }: Props) {
   return (
-    <Card title="Activity">
+    <Card title={say('Activity')}>
       {error ? (
-        <Notice tone="bad" title="The changes could not be loaded." onRetry={retry}>
+        <Notice tone="bad" title={say('The changes could not be loaded.')} onRetry={retry}>
           {error.message}
         </Notice>
       ) : null}
       {/* eslint-disable-next-line jsx-a11y/no-noninteractive-tabindex -- a region that scrolls takes the keys that scroll it */}
-      <div className={styles.list} role="region" aria-label="Changes, newest first" tabIndex={0}>
+      <div className={styles.list} role="region" aria-label={say('Changes, newest first')} tabIndex={0}>
         {events === undefined && !error ? (
           <Skeleton height="120px" />
         ) : (

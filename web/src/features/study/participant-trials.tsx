@@ -1,5 +1,6 @@
 import { Link } from 'wouter';
 import type { Participant, Slot, StudyTrial } from '@/api';
+import { marked, say } from '@/language';
 import { Badge, Button, type Tone } from '@/ui';
 import { formatClock, formatCount, formatDuration, isoDateTime, kNone } from '@/units';
 import type { StudyAction } from './action-dialog';
@@ -11,16 +12,16 @@ interface Props {
 }
 
 const kTrial: Record<StudyTrial['state'], { word: string; tone: Tone }> = {
-  arriving: { word: 'uploading', tone: 'accent' },
-  counts: { word: 'valid', tone: 'good' },
-  invalid: { word: 'invalid', tone: 'warn' },
-  surplus: { word: 'surplus', tone: 'warn' },
+  arriving: { word: marked('uploading'), tone: 'accent' },
+  counts: { word: marked('valid'), tone: 'good' },
+  invalid: { word: marked('invalid'), tone: 'warn' },
+  surplus: { word: marked('surplus'), tone: 'warn' },
 };
 const kSlot: Record<Slot['state'], string> = {
-  waiting: 'not started',
-  taken: 'at a station',
-  recorded: 'done',
-  invalid: 'invalid',
+  waiting: marked('not started'),
+  taken: marked('at a station'),
+  recorded: marked('done'),
+  invalid: marked('invalid'),
 };
 
 function TrialCells({
@@ -39,7 +40,7 @@ function TrialCells({
   return (
     <>
       <td>
-        <Badge tone={tone}>{word}</Badge>
+        <Badge tone={tone}>{say(word)}</Badge>
         {trial.reason === '' ? null : <span className={styles.reason}>{trial.reason}</span>}
       </td>
       <td>
@@ -52,16 +53,19 @@ function TrialCells({
       <td>{trial.station}</td>
       <td className={styles.number}>{trial.duration_s === null ? kNone : formatDuration(trial.duration_s)}</td>
       <td className={styles.number}>{trial.samples === null ? kNone : formatCount(trial.samples)}</td>
-      <td>{trial.correct === null ? kNone : trial.correct ? '✓ correct' : '✗ incorrect'}</td>
+      <td>{trial.correct === null ? kNone : trial.correct ? say('✓ correct') : say('✗ incorrect')}</td>
       <td className={styles.actions}>
-        {arrived ? <Link href={`/trials/${encodeURIComponent(trial.id)}`}>Open</Link> : null}
+        {arrived ? <Link href={`/trials/${encodeURIComponent(trial.id)}`}>{say('Open')}</Link> : null}
         {trial.state === 'counts' ? (
           <Button
             look="quiet"
-            label={`Mark as invalid: trial ${slot.number} of ${participant}`}
+            label={say('Mark as invalid: trial {number} of {name}', {
+              number: formatCount(slot.number),
+              name: participant,
+            })}
             onClick={() => ask({ kind: 'invalid', participant, trial: trial.id, number: slot.number })}
           >
-            Mark as invalid…
+            {say('Mark as invalid…')}
           </Button>
         ) : null}
       </td>
@@ -81,7 +85,9 @@ function Line({
   const head = (
     <th scope="row">
       {formatCount(slot.number)}
-      {slot.repeat_of === null ? null : <span className={styles.repeat}> repeats {formatCount(slot.repeat_of)}</span>}
+      {slot.repeat_of === null ? null : (
+        <span className={styles.repeat}> {say('repeats {number}', { number: formatCount(slot.repeat_of) })}</span>
+      )}
       {slot.scenario === null ? null : <span className={styles.repeat}> {slot.scenario}</span>}
     </th>
   );
@@ -90,7 +96,7 @@ function Line({
       <tr>
         {head}
         <td colSpan={7} className={styles.none}>
-          {kSlot[slot.state]}
+          {say(kSlot[slot.state])}
         </td>
       </tr>
     );
@@ -102,7 +108,7 @@ function Line({
             head
           ) : (
             <th scope="row">
-              <span className="hidden-visually">{formatCount(slot.number)}, again</span>
+              <span className="hidden-visually">{say('{number}, again', { number: formatCount(slot.number) })}</span>
             </th>
           )}
           <TrialCells trial={trial} slot={slot} participant={participant} ask={ask} />
@@ -117,22 +123,22 @@ export function ParticipantTrials({ participant, ask }: Props) {
   return (
     <div className={styles.places}>
       <table className={styles.table}>
-        <caption className="hidden-visually">Trials of {participant.name}</caption>
+        <caption className="hidden-visually">{say('Trials of {name}', { name: participant.name })}</caption>
         <thead>
           <tr>
-            <th scope="col">Position</th>
-            <th scope="col">Trial</th>
-            <th scope="col">Started</th>
-            <th scope="col">Station</th>
+            <th scope="col">{say('Position')}</th>
+            <th scope="col">{say('Trial')}</th>
+            <th scope="col">{say('Started')}</th>
+            <th scope="col">{say('Station')}</th>
             <th scope="col" className={styles.number}>
-              Duration
+              {say('Duration')}
             </th>
             <th scope="col" className={styles.number}>
-              Samples
+              {say('Samples')}
             </th>
-            <th scope="col">Answer</th>
+            <th scope="col">{say('Answer')}</th>
             <th scope="col">
-              <span className="hidden-visually">Actions</span>
+              <span className="hidden-visually">{say('Actions')}</span>
             </th>
           </tr>
         </thead>
@@ -144,7 +150,9 @@ export function ParticipantTrials({ participant, ask }: Props) {
       </table>
       {participant.at_station ? (
         <p>
-          <Button onClick={() => ask({ kind: 'release', participant: participant.name })}>Release reservation…</Button>
+          <Button onClick={() => ask({ kind: 'release', participant: participant.name })}>
+            {say('Release reservation…')}
+          </Button>
         </p>
       ) : null}
     </div>

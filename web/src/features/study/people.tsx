@@ -1,6 +1,7 @@
 import { useState } from 'react';
 import { Link } from 'wouter';
 import type { Participant, Slot, Study } from '@/api';
+import { marked, say } from '@/language';
 import { Badge, Button, DataTable, type DataColumn } from '@/ui';
 import { formatCount, kNone } from '@/units';
 import type { StudyAction } from './action-dialog';
@@ -16,12 +17,16 @@ interface Props {
 function Cell({ slot }: { readonly slot: Slot }) {
   const mark = markOf(slot),
     trial = trialOf(slot);
-  const label = `${formatCount(slot.number)}: ${kMarkLabel[mark]}`;
+  const label = say('{number}: {state}', { number: formatCount(slot.number), state: say(kMarkLabel[mark]) });
   const arrived = trial && trial.state !== 'arriving';
   return (
     <li data-mark={mark} className={styles.cell}>
       {arrived ? (
-        <Link href={`/trials/${encodeURIComponent(trial.id)}`} title={label} aria-label={`Trial ${label}`}>
+        <Link
+          href={`/trials/${encodeURIComponent(trial.id)}`}
+          title={label}
+          aria-label={say('Trial {label}', { label })}
+        >
           {kMarkSign[mark]}
         </Link>
       ) : (
@@ -40,7 +45,7 @@ const columnsOf = (
   ask: Props['ask'],
 ): readonly DataColumn<Participant>[] => [
   {
-    name: 'Participant',
+    name: marked('Participant'),
     by: ({ name }) => name,
     cell: (one) => (
       <>
@@ -57,7 +62,7 @@ const columnsOf = (
           {one.simulated ? (
             <>
               {' '}
-              <Badge tone="warn">simulated</Badge>
+              <Badge tone="warn">{say('simulated')}</Badge>
             </>
           ) : null}
         </span>
@@ -65,17 +70,17 @@ const columnsOf = (
     ),
   },
   {
-    name: 'Status',
-    by: (one) => statusOf(one).text,
+    name: marked('Status'),
+    by: (one) => say(statusOf(one).text),
     cell: (one) => (
       <>
-        <Badge tone={statusOf(one).tone}>{statusOf(one).text}</Badge>
+        <Badge tone={statusOf(one).tone}>{say(statusOf(one).text)}</Badge>
         <span className={styles.level}>{one.last_station ?? ''}</span>
       </>
     ),
   },
   {
-    name: 'Trials in order',
+    name: marked('Trials in order'),
     cell: (one) => (
       <ol className={styles.cells}>
         {one.slots.map((slot) => (
@@ -85,32 +90,35 @@ const columnsOf = (
     ),
   },
   {
-    name: 'Done',
+    name: marked('Done'),
     by: ({ done }) => done,
     cell: (one) => <span data-part="done">{progressOf(one)}</span>,
     number: true,
   },
   {
-    name: 'Recognised',
+    name: marked('Recognised'),
     by: ({ judged, recognised }) => (judged === 0 ? null : recognised / judged),
-    cell: ({ judged, recognised }) => (judged === 0 ? kNone : `${formatCount(recognised)} of ${formatCount(judged)}`),
+    cell: ({ judged, recognised }) => (judged === 0 ? kNone : progressOf({ done: recognised, planned: judged })),
     number: true,
   },
   {
-    name: <span className="hidden-visually">Actions</span>,
+    name: <span className="hidden-visually">{say('Actions')}</span>,
     number: true,
     cell: (one) =>
       one.state === 'paused' ? (
-        <Button label={`Resume ${one.name}`} onClick={() => ask({ kind: 'resume', participant: one.name })}>
-          Resume
+        <Button
+          label={say('Resume {name}', { name: one.name })}
+          onClick={() => ask({ kind: 'resume', participant: one.name })}
+        >
+          {say('Resume')}
         </Button>
       ) : (
         <Button
-          label={`Pause ${one.name}`}
+          label={say('Pause {name}', { name: one.name })}
           disabled={statusOf(one).text === 'complete'}
           onClick={() => ask({ kind: 'pause', participant: one.name })}
         >
-          Pause
+          {say('Pause')}
         </Button>
       ),
   },
@@ -128,25 +136,25 @@ export function People({ study, ask }: Props) {
   return (
     <>
       <DataTable<Participant>
-        caption="Participants and their trials"
+        caption={say('Participants and their trials')}
         className={styles.frame}
         rows={study.participants}
         keyOf={({ name }) => name}
-        empty="No participants yet."
+        empty={say('No participants yet.')}
         filter={{
-          label: 'Filter by pseudonym, level or status',
-          text: (one) => `${one.name} ${levelOf(one)} ${statusOf(one).text}`,
+          label: say('Filter by pseudonym, level or status'),
+          text: (one) => `${one.name} ${levelOf(one)} ${say(statusOf(one).text)}`,
         }}
         columns={columnsOf(opened, toggle, ask)}
         detail={(one) => (opened.has(one.name) ? <ParticipantTrials participant={one} ask={ask} /> : null)}
       />
-      <ul className={styles.key} aria-label="Legend">
+      <ul className={styles.key} aria-label={say('Legend')}>
         {(Object.keys(kMarkLabel) as (keyof typeof kMarkLabel)[]).map((mark) => (
           <li key={mark}>
             <span data-mark={mark} className={styles.cell} aria-hidden="true">
               <span>{kMarkSign[mark]}</span>
             </span>
-            {kMarkLabel[mark]}
+            {say(kMarkLabel[mark])}
           </li>
         ))}
       </ul>

@@ -1,6 +1,7 @@
 import { useMutation, useQueryClient } from '@tanstack/react-query';
 import { useState, type FormEvent } from 'react';
 import { ApiError, apiTokensQuery, makeApiToken } from '@/api';
+import { say } from '@/language';
 import { Button, Card, Field, Notice } from '@/ui';
 import { dateText, endOfDay_utc_us } from './dates';
 import styles from './tokens.module.css';
@@ -21,7 +22,7 @@ function Scopes({
 }) {
   return (
     <fieldset className={styles.scopes}>
-      <legend>Scopes: what programs may do with the token</legend>
+      <legend>{say('Scopes: what programs may do with the token')}</legend>
       {offered.map(({ scope, meaning }) => (
         <label key={scope}>
           <input
@@ -32,7 +33,7 @@ function Scopes({
             }
           />
           <span>
-            <code>{scope}</code> {meaning}
+            <code>{scope}</code> {say(meaning)}
           </span>
         </label>
       ))}
@@ -73,11 +74,11 @@ export function NewToken({ offered }: { readonly offered: readonly Offered[] }) 
     });
   };
   return (
-    <Card title="New token">
+    <Card title={say('New token')}>
       <div className={styles.stack}>
         <form className={styles.form} onSubmit={submit}>
           <Field
-            label="Name"
+            label={say('Name')}
             value={name}
             required
             maxLength={60}
@@ -85,7 +86,7 @@ export function NewToken({ offered }: { readonly offered: readonly Offered[] }) 
             onChange={(event) => setName(event.target.value)}
           />
           <Field
-            label="Valid until"
+            label={say('Valid until')}
             type="date"
             required
             value={until}
@@ -95,7 +96,7 @@ export function NewToken({ offered }: { readonly offered: readonly Offered[] }) 
           />
           <Scopes offered={offered} chosen={scopes} onChange={setScopes} />
           <Field
-            label="Your password"
+            label={say('Your password')}
             type="password"
             autoComplete="current-password"
             required
@@ -103,7 +104,7 @@ export function NewToken({ offered }: { readonly offered: readonly Offered[] }) 
             onChange={(event) => setPassword(event.target.value)}
           />
           <Field
-            label={needsCode ? 'One-time code' : 'One-time code (if you use them)'}
+            label={needsCode ? say('One-time code') : say('One-time code (if you use them)')}
             value={code}
             inputMode="numeric"
             autoComplete="one-time-code"
@@ -115,20 +116,20 @@ export function NewToken({ offered }: { readonly offered: readonly Offered[] }) 
             type="submit"
             disabled={made.isPending || name.trim() === '' || scopes.length === 0 || password === ''}
           >
-            {made.isPending ? 'Making…' : 'Make token'}
+            {made.isPending ? say('Making…') : say('Make token')}
           </Button>
         </form>
         {made.isError ? (
-          <Notice tone="bad" title="The token was not made.">
+          <Notice tone="bad" title={say('The token was not made.')}>
             {made.error.message}
           </Notice>
         ) : null}
         {made.data ? (
-          <Notice tone="warn" title={`Token ${made.data.entry.name}`}>
+          <Notice tone="warn" title={say('Token {name}', { name: made.data.entry.name })}>
             <p className={styles.secret} data-part="secret">
               {made.data.token}
             </p>
-            <p>Copy the token now: it is shown only once. Keep it like a password.</p>
+            <p>{say('Copy the token now: it is shown only once. Keep it like a password.')}</p>
           </Notice>
         ) : null}
       </div>

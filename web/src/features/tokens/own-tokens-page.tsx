@@ -1,6 +1,7 @@
 import { useQuery } from '@tanstack/react-query';
 import { Link } from 'wouter';
 import { apiTokensQuery } from '@/api';
+import { say } from '@/language';
 import { Card, Notice, useTitle } from '@/ui';
 import { NewToken } from './new-token';
 import { TokenTable } from './token-table';
@@ -8,27 +9,27 @@ import styles from './tokens.module.css';
 
 /** The signed-in person's API tokens. */
 export function OwnTokensPage() {
-  useTitle('API tokens');
+  useTitle(say('API tokens'));
   const query = useQuery(apiTokensQuery);
   return (
     <div className={styles.page}>
       <div>
-        <h1>API tokens</h1>
+        <h1>{say('API tokens')}</h1>
         <p className={styles.lead}>
-          With a token your scripts call the server for you, within the token’s scopes and your role.{' '}
-          <Link href="/guide/scripts">Examples with curl, Python and R</Link>
+          {say('With a token your scripts call the server for you, within the token’s scopes and your role.')}{' '}
+          <Link href="/guide/scripts">{say('Examples with curl, Python and R')}</Link>
         </p>
       </div>
       {query.isError ? (
-        <Notice tone="bad" title="The tokens could not be loaded." onRetry={() => void query.refetch()}>
+        <Notice tone="bad" title={say('The tokens could not be loaded.')} onRetry={() => void query.refetch()}>
           {query.error.message}
         </Notice>
       ) : null}
       {query.data ? ( // both cards at once, so that neither pushes the other down
         <>
           <NewToken offered={query.data.scopes} />
-          <Card title="Your tokens">
-            <TokenTable tokens={query.data.tokens} empty="You have no tokens." />
+          <Card title={say('Your tokens')}>
+            <TokenTable tokens={query.data.tokens} empty={say('You have no tokens.')} />
           </Card>
         </>
       ) : null}

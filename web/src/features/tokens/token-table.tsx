@@ -1,6 +1,7 @@
 import { useMutation, useQueryClient } from '@tanstack/react-query';
 import { useState } from 'react';
 import { revokeApiToken, type ApiToken } from '@/api';
+import { marked, say } from '@/language';
 import { AskDialog, Badge, Button, DataTable, Notice } from '@/ui';
 import { formatDate, formatDateTime } from '@/units';
 
@@ -9,9 +10,13 @@ const now_utc_us = () => Date.now() * 1000;
 
 export function tokenState(token: ApiToken, now: number): { readonly text: string; readonly tone: 'good' | 'neutral' } {
   if (token.revoked_utc_us !== null)
-    return { text: `revoked ${formatDate(token.revoked_utc_us)} by ${token.revoked_by ?? ''}`, tone: 'neutral' };
-  if (token.expires_utc_us <= now) return { text: `expired ${formatDate(token.expires_utc_us)}`, tone: 'neutral' };
-  return { text: `valid until ${formatDate(token.expires_utc_us)}`, tone: 'good' };
+    return {
+      text: say('revoked {date} by {name}', { date: formatDate(token.revoked_utc_us), name: token.revoked_by ?? '' }),
+      tone: 'neutral',
+    };
+  const date = formatDate(token.expires_utc_us);
+  if (token.expires_utc_us <= now) return { text: say('expired {date}', { date }), tone: 'neutral' };
+  return { text: say('valid until {date}', { date }), tone: 'good' };
 }
 
 /** Tokens with a button that revokes one. */
@@ -34,23 +39,25 @@ export function TokenTable({
   return (
     <>
       {revoked.isError ? (
-        <Notice tone="bad" title="The token was not revoked.">
+        <Notice tone="bad" title={say('The token was not revoked.')}>
           {revoked.error.message}
         </Notice>
       ) : null}
       <DataTable<ApiToken>
-        caption="API tokens"
-        order={owners ? 'by owner' : 'newest first'}
+        caption={say('API tokens')}
+        order={owners ? say('by owner') : say('newest first')}
         minWidth={720}
         rows={tokens}
         keyOf={({ id }) => id}
         empty={empty}
         columns={[
-          ...(owners ? [{ name: 'Owner', by: (one: ApiToken) => one.owner, cell: (one: ApiToken) => one.owner }] : []),
-          { name: 'Name', by: (one) => one.name, cell: (one) => one.name },
-          { name: 'Scopes', cell: (one) => one.scopes.join(', ') },
+          ...(owners
+            ? [{ name: marked('Owner'), by: (one: ApiToken) => one.owner, cell: (one: ApiToken) => one.owner }]
+            : []),
+          { name: marked('Name'), by: (one) => one.name, cell: (one) => one.name },
+          { name: marked('Scopes'), cell: (one) => one.scopes.join(', ') },
           {
-            name: 'State',
+            name: marked('State'),
             by: (one) => one.expires_utc_us,
             cell: (one) => {
               const { text, tone } = tokenState(one, now);
@@ -58,16 +65,16 @@ export function TokenTable({
             },
           },
           {
-            name: 'Last use',
+            name: marked('Last use'),
             by: (one) => one.used_utc_us,
-            cell: (one) => (one.used_utc_us === null ? 'never' : formatDateTime(one.used_utc_us)),
+            cell: (one) => (one.used_utc_us === null ? say('never') : formatDateTime(one.used_utc_us)),
           },
           {
-            name: <span className="hidden-visually">Actions</span>,
+            name: <span className="hidden-visually">{say('Actions')}</span>,
             cell: (one) =>
               tokenState(one, now).tone === 'good' ? (
-                <Button label={`Revoke ${one.name}`} onClick={() => setAsked(one)}>
-                  Revoke
+                <Button label={say('Revoke {name}', { name: one.name })} onClick={() => setAsked(one)}>
+                  {say('Revoke')}
                 </Button>
               ) : null,
           },
@@ -75,12 +82,14 @@ export function TokenTable({
       />
       {asked ? (
         <AskDialog
-          title={`Revoke ${asked.name}?`}
-          action="Revoke"
+          title={say('Revoke {name}?', { name: asked.name })}
+          action={say('Revoke')}
           onAction={() => revoked.mutateAsync(asked.id)}
           onClose={() => setAsked(null)}
         >
-          <p>Programs that use this token can no longer call the server. A revoked token cannot be restored.</p>
+          <p>
+            {say('Programs that use this token can no longer call the server. A revoked token cannot be restored.')}
+          </p>
         </AskDialog>
       ) : null}
     </>
