@@ -23,7 +23,6 @@ using core::Error;
 using core::Json;
 using core::Result;
 
-constexpr std::uint64_t kMaxCaseMaking_bytes = 4096 + volume::EnvelopeMark::kMostMarks * 128;
 constexpr std::size_t kMaxTitle = 200;
 constexpr std::int64_t kMostShown = 50;
 
@@ -235,7 +234,7 @@ RouteInfo case_making_route(std::string method, std::string path, std::string id
           .who = {Role::admin, Role::faculty},
           .parameters = {},
           .body = std::move(body),
-          .body_limit_bytes = kMaxCaseMaking_bytes,
+          .body_limit_bytes = kMaxPlan_bytes,
           .answer = std::move(answer),
           .schemas = {},
           .handle = handle};

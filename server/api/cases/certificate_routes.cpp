@@ -19,8 +19,6 @@ using core::Errc;
 using core::Json;
 using core::Result;
 
-constexpr std::uint64_t kMaxPlan_bytes = 4096 + volume::EnvelopeMark::kMostMarks * 128;
-
 /// Each person's newest question: an older one, about a tract that was moved since, is called off.
 class NewestQuestion {
  public:

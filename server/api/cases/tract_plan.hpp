@@ -9,6 +9,8 @@ namespace tractus::api {
 
 /// Distance between the depths along the tract at which the walls of the bone are reported.
 inline constexpr double kWallStep_m = 0.0005;
+/// A request with a plan is no larger.
+inline constexpr std::uint64_t kMaxPlan_bytes = 4096 + volume::EnvelopeMark::kMostMarks * 128;
 
 /// The result of cases::place for the plan, in the JSON form of the routes: {"length_m", "side",
 /// "tract", "walls", "breach", "problems", "warnings"}. Never fails: errors of the plan are among the problems,
