@@ -149,8 +149,7 @@ core::Result<Placed> with_walls(const volume::Volume& bone,
                                 Placed placed) {
   const volume::WallFinder finder(bone, transfer);
   placed.mouth_m = finder.behind_entry_m(placed.tract) + kOpenAir_m;
-  for (const auto wall : volume::kWalls)
-    placed.walls.push_back(finder.thinnest(placed.tract, wall));
+  placed.walls = finder.thinnest(placed.tract);
   if (plan.breach)
     placed.breach = TRY(volume::place_breach(bone, transfer, placed.tract, *plan.breach));
   return placed;

@@ -71,6 +71,8 @@ class WallFinder {
   /// differ by less than 0.3 mm the one nearest to the isthmus. For `anterior`, the wall ahead of
   /// the end. Errors: as `wall_at`; out_of_range where no part of the tract is so enclosed.
   core::Result<WallFound> thinnest(const Tract& tract, Wall wall) const;
+  /// The same of every wall, in the order of kWalls, in the time of one.
+  std::vector<core::Result<WallFound>> thinnest(const Tract& tract) const;
 
   /// How far behind the entry the bone reaches on the tract's line, m: the drill came through that.
   /// Bone is followed over gaps of up to 5 mm, for at most 40 mm.
@@ -84,6 +86,7 @@ class WallFinder {
   using Section = std::array<WallFound, 4>;  // medial, lateral, superior, inferior, as in kWalls
   std::optional<Section> section_at(const Tract& tract, double at_m) const;
   std::vector<Section> sections_of(const Tract& tract) const;
+  static core::Result<WallFound> thinnest_of(std::vector<Section> sections, Wall wall);
   core::Result<WallFound> first_run(const Bundle& bundle, WallFound found, double from_m) const;
   std::optional<double> opacity_at(const Bundle& bundle, double distance_m) const;
   const Volume& volume_;

@@ -95,6 +95,15 @@ TEST_P(APipe, HasItsThinnestMedialWallWhereItWasMadeThin) {
   EXPECT_NEAR(lateral->thickness_m() / kMm, 2.0, half_voxel);
   EXPECT_NEAR(superior->inner_m / kMm, 6.0, half_voxel);
   EXPECT_NEAR(superior->thickness_m() / kMm, 2.0, half_voxel);
+  const auto all = finder.thinnest(pipe_tract());
+  ASSERT_EQ(all.size(), kWalls.size());
+  for (std::size_t w = 0; w < all.size(); ++w) {
+    const auto one = finder.thinnest(pipe_tract(), kWalls[w]);
+    ASSERT_EQ(bool(all[w]), bool(one));
+    if (!one) continue;
+    EXPECT_EQ(all[w]->at_m, one->at_m);
+    EXPECT_EQ(all[w]->thickness_m(), one->thickness_m());
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(

@@ -22,7 +22,24 @@ constexpr std::size_t kStarts = 3;
 constexpr double kFirstStep_m = 2e-4, kLastStep_m = 2e-5;
 constexpr std::array kSigmas_m{2e-4, 3e-4, 4.5e-4, 6e-4, 8e-4, 1.1e-3, 1.6e-3};
 
-double step_at(double x) { return 0.5 * std::erfc(-x / std::numbers::sqrt2); }
+/// The normal distribution's function, from a table: true to 2e-6.
+class Step {
+ public:
+  Step() {
+    for (std::size_t n = 0; n < values_.size(); ++n)
+      values_[n] = 0.5 * std::erfc((kReach - double(n) / kPerUnit) / std::numbers::sqrt2);
+  }
+  double at(double x) const {
+    const double place = (std::clamp(x, -kReach, kReach) + kReach) * kPerUnit;
+    const auto n = std::min(std::size_t(place), values_.size() - 2);
+    return values_[n] + (place - double(n)) * (values_[n + 1] - values_[n]);
+  }
+
+ private:
+  static constexpr double kReach = 6.0, kPerUnit = 128.0;
+  std::array<double, std::size_t(2.0 * kReach * kPerUnit) + 1> values_;
+};
+const Step kStepFunction;
 
 /// The model at given x₀ and thickness, with the best y₀ and y₂.
 CortexFit solved(const CortexProfile& profile, const CortexScan& scan, double outer_m,
@@ -30,8 +47,8 @@ CortexFit solved(const CortexProfile& profile, const CortexScan& scan, double ou
   double ii = 0.0, io = 0.0, oo = 0.0, iy = 0.0, oy = 0.0, yy = 0.0;
   for (std::size_t n = 0; n < profile.values.size(); ++n) {
     const double x = profile.from_m + double(n) * profile.step_m;
-    const double o = step_at((x - outer_m) / scan.sigma_m),
-                 i = 1.0 - step_at((x - outer_m + thickness_m) / scan.sigma_m);
+    const double o = kStepFunction.at((x - outer_m) / scan.sigma_m),
+                 i = 1.0 - kStepFunction.at((x - outer_m + thickness_m) / scan.sigma_m);
     const double y = profile.values[n] - scan.density * (1.0 - i - o);
     ii += i * i, io += i * o, oo += o * o, iy += i * y, oy += o * y, yy += y * y;
   }

@@ -277,12 +277,13 @@ std::vector<double> faces_of(const Volume& ct, const Fan& fan,
                              std::span<const EnvelopeMark> marks) {
   Costs costs(column(fan.rows(), 0));
   const double width_m = std::max(kFaceWidth_m, 0.8 * ct.geometry.spacing_m.maxCoeff());
-  for (int row = 0; row < fan.rows(); ++row)
+  tbb::parallel_for(0, fan.rows(), [&](int row) {
     for (int turn = 0; turn < Fan::kRays; ++turn) {
       float* cost = &costs[column(row, turn)];
       ray_costs(ct, fan.foot(row), fan.direction(row, turn), width_m, cost);
       heed_marks(marks, fan.foot(row), fan.direction(row, turn), cost);
     }
+  });
   const Costs sums = path_sums(costs, fan.rows());
   std::vector<double> out;
   for (std::size_t at = 0; at < sums.size(); at += std::size_t(kRadial)) {

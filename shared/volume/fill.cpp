@@ -54,10 +54,12 @@ Box Filling::fill(Volume& volume, const Envelope& envelope, const Tract& tract) 
   tbb::parallel_for(box.begin[2], box.end[2], [&](int k) {
     for (int j = box.begin[1]; j < box.end[1]; ++j)
       for (int i = box.begin[0]; i < box.end[0]; ++i) {
+        const double before = volume.value(i, j, k);
+        if (before >= full_) continue;  // as opaque as bone can be
         const auto depth = envelope.depth(volume.geometry.position_of(Vec3(i, j, k)));
         const double share = envelope.share_at(depth.inside_m);
         if (share == 0.0) continue;
-        const double before = volume.value(i, j, k), after = filled(before, cortex_share(depth));
+        const double after = filled(before, cortex_share(depth));
         volume.counts[volume.offset(i, j, k)] = volume.count_of(before + share * (after - before));
       }
   });

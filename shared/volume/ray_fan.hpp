@@ -42,11 +42,12 @@ class Fan {
     const double depth = tract_.depth_of(p);
     const math::Vec2 off = tract_.offset_of(p);
     const double inside = std::clamp(depth, 0.0, tract_.length_m), over = depth - inside;
-    const double lift = std::atan2(over, off.norm()) / (std::numbers::pi / 2.0);  // −1 … 1
+    const double aside = off.norm();
+    const double lift = std::atan2(over, aside) / (std::numbers::pi / 2.0);  // −1 … 1
     const double row = kPolar + inside / tract_.length_m * (along_ - 1) + lift * kPolar;
     double turn = std::atan2(off.y(), off.x()) / (2.0 * std::numbers::pi) * kRays;
     if (turn < 0.0) turn += kRays;
-    return {row, turn, std::hypot(over, off.norm())};
+    return {row, turn, std::sqrt(over * over + aside * aside)};
   }
   bool beside(int row) const { return row >= kPolar && row < kPolar + along_; }
   double depth_m(int row) const { return double(row - kPolar) / (along_ - 1) * tract_.length_m; }

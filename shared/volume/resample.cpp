@@ -1,6 +1,8 @@
 #include "volume/resample.hpp"
 
 #include <fmt/format.h>
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
@@ -60,18 +62,32 @@ float blend(const Tap& tap, const float* from, std::size_t stride) {
 /// One source slice k, resampled along i and j. [j][i], counts.
 std::vector<float> slice_of(const Volume& volume, const Axis& i_axis, const Axis& j_axis, int k) {
   const std::size_t ni = i_axis.taps.size();
-  std::vector<float> row(std::size_t(i_axis.count)), rows(std::size_t(j_axis.count) * ni);
-  for (int j = 0; j < j_axis.count; ++j) {
+  std::vector<float> rows(std::size_t(j_axis.count) * ni), out(j_axis.taps.size() * ni);
+  tbb::parallel_for(0, j_axis.count, [&](int j) {
     const std::uint16_t* from = &volume.counts[volume.offset(i_axis.first, j_axis.first + j, k)];
-    std::copy(from, from + i_axis.count, row.begin());
+    const std::vector<float> row(from, from + i_axis.count);
     for (std::size_t i = 0; i < ni; ++i)
       rows[std::size_t(j) * ni + i] = blend(i_axis.taps[i], row.data(), 1);
-  }
-  std::vector<float> out(j_axis.taps.size() * ni);
-  for (std::size_t j = 0; j < j_axis.taps.size(); ++j)
+  });
+  tbb::parallel_for(std::size_t(0), j_axis.taps.size(), [&](std::size_t j) {
     for (std::size_t i = 0; i < ni; ++i)
       out[j * ni + i] = blend(j_axis.taps[j], rows.data() + i, ni);
+  });
   return out;
+}
+
+/// One slice of the result, counts to the nearest.
+void blend_slices(const Tap& tap, const std::vector<std::vector<float>>& slices,
+                  std::span<std::uint16_t> out) {
+  std::array<const float*, 4> from{};
+  for (std::size_t q = 0; q < 4; ++q) from[q] = slices[std::size_t(tap.at[q])].data();
+  tbb::parallel_for(tbb::blocked_range(std::size_t(0), out.size()), [&](const auto& part) {
+    for (std::size_t m = part.begin(); m < part.end(); ++m) {
+      float sum = 0.0f;
+      for (std::size_t q = 0; q < 4; ++q) sum += tap.weight[q] * from[q][m];
+      out[m] = std::uint16_t(int(std::clamp(sum, 0.0f, 65535.0f) + 0.5f));
+    }
+  });
 }
 
 core::Result<void> check(const Volume& volume, const Box& box, double spacing_m) {
@@ -146,11 +162,7 @@ core::Result<Volume> resample_finer(const Volume& volume, const Box& box, double
     const int oldest = *std::ranges::min_element(tap.at);
     for (int at = oldest - 1; at >= 0 && !slices[std::size_t(at)].empty(); --at)
       std::vector<float>().swap(slices[std::size_t(at)]);
-    for (std::size_t m = 0; m < area; ++m) {
-      float sum = 0.0f;
-      for (std::size_t q = 0; q < 4; ++q) sum += tap.weight[q] * slices[std::size_t(tap.at[q])][m];
-      out.counts[k * area + m] = std::uint16_t(std::clamp(std::lround(sum), 0l, 65535l));
-    }
+    blend_slices(tap, slices, {&out.counts[k * area], area});
     if (progress && !progress(double(k + 1) / double(axes[2].taps.size())))
       return core::Error{core::Errc::cancelled, "resampling was stopped"};
   }

@@ -140,11 +140,9 @@ std::vector<WallFinder::Section> WallFinder::sections_of(const Tract& tract) con
   return sections;
 }
 
-core::Result<WallFound> WallFinder::thinnest(const Tract& tract, Wall wall) const {
-  if (wall == Wall::anterior) return wall_at(tract, wall, tract.length_m);
+core::Result<WallFound> WallFinder::thinnest_of(std::vector<Section> sections, Wall wall) {
   const auto width = [](const Section& s) { return s[0].outer_m + s[1].outer_m; };
   const auto thickness = [&](const Section& s) { return s[std::size_t(wall)].thickness_m(); };
-  std::vector<Section> sections = sections_of(tract);
   if (sections.empty())
     return refused(
         fmt::format("{}: no part of the tract is enclosed by bone on all four sides within {:.0f} "
@@ -160,6 +158,20 @@ core::Result<WallFound> WallFinder::thinnest(const Tract& tract, Wall wall) cons
   std::erase_if(sections, [&](const Section& s) { return thickness(s) > thin_m + kAlike_m; });
   const auto away = [&](const Section& s) { return std::abs(s[0].at_m - isthmus_m); };
   return (*std::ranges::min_element(sections, {}, away))[std::size_t(wall)];
+}
+
+core::Result<WallFound> WallFinder::thinnest(const Tract& tract, Wall wall) const {
+  if (wall == Wall::anterior) return wall_at(tract, wall, tract.length_m);
+  return thinnest_of(sections_of(tract), wall);
+}
+
+std::vector<core::Result<WallFound>> WallFinder::thinnest(const Tract& tract) const {
+  const auto sections = sections_of(tract);
+  std::vector<core::Result<WallFound>> out;
+  for (const Wall wall : kWalls)
+    out.push_back(wall == Wall::anterior ? wall_at(tract, wall, tract.length_m)
+                                         : thinnest_of(sections, wall));
+  return out;
 }
 
 double WallFinder::behind_entry_m(const Tract& tract) const {
