@@ -107,6 +107,14 @@ core::Result<volume::Tract> tract_of(const volume::Volume& ct,
   return tract;
 }
 
+/// Does half of the tract's width lie in the envelope at that depth?
+bool lies_in(const volume::Envelope& envelope, const volume::Tract& tract, double depth_m) {
+  const Vec3 at = tract.entry_m + depth_m * tract.axis;
+  return std::ranges::all_of(
+      std::array{tract.medial, Vec3(-tract.medial), tract.superior, Vec3(-tract.superior)},
+      [&](const Vec3& out) { return envelope.share(at + 0.5 * tract.radius_m * out) >= 0.5; });
+}
+
 /// The envelope of filled bone about a tract, which must lie in it beyond its first third.
 core::Result<std::shared_ptr<const volume::Envelope>> envelope_of(const volume::Volume& ct,
                                                                   const CarvingPlan& plan,
@@ -115,7 +123,7 @@ core::Result<std::shared_ptr<const volume::Envelope>> envelope_of(const volume::
   if (!envelope) envelope = TRY(volume::envelope_about(ct, tract, plan.envelope_marks));
   for (const double share : {0.4, 0.6, 0.8}) {
     const double depth_m = share * tract.length_m;
-    if (envelope->share(tract.entry_m + depth_m * tract.axis) < 0.5)
+    if (!lies_in(*envelope, tract, depth_m))
       return Error{Errc::out_of_range,
                    fmt::format("the tract leaves the vertebra's envelope at depth {:.1f} mm: move "
                                "entry or target, or give the envelope",

@@ -75,9 +75,9 @@ void heed_marks(std::span<const EnvelopeMark> marks, const Vec3& foot, const Vec
     const Vec3 to = mark.at_m - foot;
     const double along_m = to.dot(direction),
                  half2 = mark.radius_m * mark.radius_m - (to.squaredNorm() - along_m * along_m);
-    const bool met = half2 > 0.0 && along_m > 0.0 && along_m < Envelope::kReach_m + mark.radius_m;
-    if (!met) continue;
+    if (!(half2 > 0.0)) continue;
     const double half_m = std::sqrt(half2);
+    if (along_m + half_m <= 0.0 || along_m - half_m >= Envelope::kReach_m) continue;
     const int near = std::clamp(int((along_m - half_m) / kRadialStep_m), 0, kRadial - 1),
               far = std::clamp(int((along_m + half_m) / kRadialStep_m) + 1, 0, kRadial - 1);
     if (mark.bone)

@@ -202,8 +202,12 @@ TEST_F(CaseMaking, AnEnvelopeIsShownAndMarked) {
   const core::Json marked = look(wish({{"envelope_marks", {mark(0.025, true)}}}));
   EXPECT_GT(farthest_x(marked), 0.0265) << "with what is said to be bone, and its far end";
 
-  // Said to be no bone, right at the tract: refused, and yet shown.
-  const core::Json refused = look(wish({{"envelope_marks", {mark(0.0182, false)}}}));
+  // Said to be no bone, right along the tract: refused, and yet shown.
+  core::Json none = core::Json::array();
+  for (const double y : {-0.006, -0.003, 0.0, 0.003, 0.006})
+    none.push_back({{"at_m", {0.0182, y, 0.0}}, {"radius_m", 0.003}, {"bone", false}});
+  const core::Json refused = look(wish({{"envelope_marks", none}}));
+  EXPECT_FALSE(refused["problems"].empty());
   EXPECT_FALSE(refused["envelope"].is_null());
 
   const core::Json making =
