@@ -20,6 +20,20 @@ TEST(Delay, IsThatOfTheFunctionLateOrEarly) {
   }
 }
 
+/// Evenly spaced samples are summed with the same weights everywhere; one stamp beside its place, and they are not.
+TEST(Delay, IsTheSameOnAnEvenClockAndOnOneThatIsNearlySo) {
+  for (const double late_s : {0.0023, -0.0017, 0.001, -0.9}) {
+    std::vector<double> even_s, y;
+    for (int k = 0; k < 1000; ++k)
+      even_s.push_back(1.0 + k * 1e-3), y.push_back(std::sin(0.7 * k) + 0.01 * k);
+    std::vector<double> uneven_s = even_s, other = y;
+    uneven_s[500] += 1e-8;
+    delay(even_s, late_s, y);
+    delay(uneven_s, late_s, other);
+    for (std::size_t k = 0; k < y.size(); ++k) EXPECT_NEAR(y[k], other[k], 1e-4) << k;
+  }
+}
+
 TEST(Delay, HoldsTheFirstAndTheLastValue) {
   const std::vector<double> t_s{0.0, 1.0, 2.0};
   std::vector<double> y{5.0, 6.0, 8.0};

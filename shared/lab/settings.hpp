@@ -48,6 +48,9 @@ struct ProbingRecordingSettings {
   double slowest_rate_Hz = 50.0;
   /// The rate at which residuals are compared: neighbours are nearly independent. Tuned.
   double thin_rate_Hz = 100.0;
+  /// A fit predicts the force no more often than it need, every n-th sample of what was recorded faster than twice this.
+  /// Bound.
+  double least_fit_rate_Hz = 800.0;
   /// A sample is at rest below so many standard errors of its speed. Tuned.
   double rest_errors = 3.0;
   /// Time round a layer's border that is not judged at the full rate. Tuned.

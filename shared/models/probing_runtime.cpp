@@ -39,11 +39,23 @@ struct Block {
 
   void fill(const ProbingMotion& motion, std::size_t from) {
     size = std::min(kBlock, motion.size() - from);
-    for (std::size_t k = 0; k < size; ++k) {
-      ticks[k] = tick_of(motion, from + k);
-      depth_m[k] = ticks[k].x_m;
-      speed_m_s[k] = ticks[k].v_m_s;
+    for (std::size_t k = 0; k < size; ++k) {  // in place: a tick that is copied waits for its stores
+      ticks[k].t_s = motion.t_s[from + k];
+      ticks[k].dt_s = from + k == 0 ? 0.0 : motion.t_s[from + k] - motion.t_s[from + k - 1];
+      ticks[k].x_m = motion.x_m[from + k];
+      ticks[k].v_m_s = motion.v_m_s[from + k];
+      ticks[k].a_m_s2 = motion.a_m_s2[from + k];
+      ticks[k].rest_m_s = motion.rest_m_s;
+      ticks[k].rest_rad_s = motion.rest_rad_s;
     }
+    const auto fill_in = [&](double ProbingTick::*member, const std::vector<double>& all) {
+      for (std::size_t k = 0; !all.empty() && k < size; ++k) ticks[k].*member = all[from + k];
+    };
+    fill_in(&ProbingTick::theta_rad, motion.theta_rad);
+    fill_in(&ProbingTick::omega_rad_s, motion.omega_rad_s);
+    fill_in(&ProbingTick::tz_Nm, motion.tz_Nm);
+    std::copy_n(motion.x_m.begin() + std::ptrdiff_t(from), size, depth_m.begin());
+    std::copy_n(motion.v_m_s.begin() + std::ptrdiff_t(from), size, speed_m_s.begin());
     added_N.fill(0.0);
   }
 };
@@ -145,15 +157,19 @@ void ProbingRuntime::predict_torque(const ProbingMotion& motion, std::span<doubl
   }
 }
 
-void ProbingRuntime::predict(const ProbingMotion& motion, ProbingForces& out) const {
+void ProbingRuntime::predict(const ProbingMotion& motion, ProbingForces& out,
+                             ProbingOutput wanted) const {
   const std::size_t n = motion.size();
   core::require(motion.t_s.size() == n && motion.v_m_s.size() == n && motion.a_m_s2.size() == n,
                 "a motion has one time, speed and acceleration for each depth");
-  out.fz_N.resize(n);
-  predict_force(motion, out.fz_N);
-  for (const auto& delay : stages_.delays) delay->delay(motion, out.fz_N);
-  for (const auto& sensor : stages_.force_sensors) sensor->record(motion, out.fz_N);
-  const bool turns = motion.theta_rad.size() == n && motion.omega_rad_s.size() == n;
+  out.fz_N.resize(wanted == ProbingOutput::torque ? 0 : n);
+  if (wanted != ProbingOutput::torque) {
+    predict_force(motion, out.fz_N);
+    for (const auto& delay : stages_.delays) delay->delay(motion, out.fz_N);
+    for (const auto& sensor : stages_.force_sensors) sensor->record(motion, out.fz_N);
+  }
+  const bool turns = wanted != ProbingOutput::force && motion.theta_rad.size() == n &&
+                     motion.omega_rad_s.size() == n;
   out.tz_Nm.resize(turns ? n : 0);
   if (!turns) return;
   predict_torque(motion, out.tz_Nm);

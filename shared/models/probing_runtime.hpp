@@ -22,6 +22,9 @@ struct ProbingForces {
   std::vector<double> tz_Nm;  ///< empty when the motion has no angle
 };
 
+/// Which of them are asked for.
+enum class ProbingOutput { force, torque, both };
+
 inline constexpr std::size_t kMaxProbingEffects = 32;
 
 /// The effects of a model by the stage at which they act, each in the model's order.
@@ -70,8 +73,9 @@ class ProbingRuntime {
                                            std::span<const effects::EffectInstance> uses);
 
   /// Force from motion, measurement effects included. The motion's arrays have one size; the last
-  /// three may be empty. A sample's dt is that since the sample before.
-  void predict(const ProbingMotion& motion, ProbingForces& out) const;
+  /// three may be empty. A sample's dt is that since the sample before. What is not asked for is left empty.
+  void predict(const ProbingMotion& motion, ProbingForces& out,
+               ProbingOutput wanted = ProbingOutput::both) const;
 
   /// Motion from force, the live rig: one tick of length `dt_s` under the push `force_N` while the
   /// probe turns at `turning_rad_s`. Sought is the speed v at which the resistance at the tick's

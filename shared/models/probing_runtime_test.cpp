@@ -33,6 +33,22 @@ ProbingMotion three_moments() {
           .tz_Nm = {}};
 }
 
+TEST(ProbingRuntime, GivesOnlyTheOutputThatIsAskedFor) {
+  ProbingMotion motion = three_moments();
+  motion.theta_rad = {0.0, 0.1, 0.2}, motion.omega_rad_s = {1.0, 1.0, 1.0};
+  const auto runtime = ProbingRuntime::make(one_layer(), 0.05);
+  ASSERT_TRUE(runtime);
+  ProbingForces both, force, torque;
+  runtime->predict(motion, both);
+  runtime->predict(motion, force, ProbingOutput::force);
+  runtime->predict(motion, torque, ProbingOutput::torque);
+  ASSERT_EQ(both.tz_Nm.size(), 3u);
+  EXPECT_EQ(force.fz_N, both.fz_N);
+  EXPECT_TRUE(force.tz_Nm.empty());
+  EXPECT_EQ(torque.tz_Nm, both.tz_Nm);
+  EXPECT_TRUE(torque.fz_N.empty());
+}
+
 TEST(ProbingRuntime, AddsFrictionAgainstTheMotionAndTheSensorsBias) {
   ProbingModel model = one_layer();
   model.effects = {{"sensor_bias", {0.25}}, {"coulomb_friction", {2.0}}};

@@ -69,6 +69,7 @@ Solution& Selection::fitted(const Solution& from, const std::string& effect, int
   Solution found = extend(residual_, from, linear_screen(residual_, from, effect), effect, tries);
   if (known != tried_.end() && known->second.mean_square() <= found.mean_square())
     return known->second;
+  refined_.erase(key);
   return tried_[key] = std::move(found);
 }
 
@@ -108,8 +109,9 @@ std::vector<const Solution*> Selection::best_of(std::size_t effects, std::size_t
 
 void Selection::keep_better(const std::string& key, Solution found) {
   const auto known = tried_.find(key);
-  if (known == tried_.end() || found.mean_square() < known->second.mean_square())
-    tried_[key] = std::move(found);
+  if (known != tried_.end() && known->second.mean_square() <= found.mean_square()) return;
+  tried_[key] = std::move(found);
+  refined_.erase(key);
 }
 
 void Selection::singles() {
@@ -131,7 +133,9 @@ void Selection::singles() {
 
 void Selection::refine(std::size_t effects) {
   for (const Solution* s : best_of(effects, kSelection.refined)) {
-    Solution& at = tried_[name(s->structure)];
+    const std::string key = name(s->structure);
+    if (!refined_.insert(key).second) continue;
+    Solution& at = tried_[key];
     at = polish(residual_, search(residual_, at.structure, at.values, nullptr,
                                   {.max_iterations = 8, .tolerance = 1e-5}));
   }

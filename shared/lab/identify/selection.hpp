@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -64,6 +65,7 @@ class Selection {
   const core::Progress& progress_;
   std::map<std::string, Solution> tried_;
   std::map<std::string, LinearScreen> screens_;
+  std::set<std::string> refined_;  // fitted to the end since they were last replaced
   std::vector<std::string> order_;
   std::string chosen_, refused_;
   bool stopped_ = false;

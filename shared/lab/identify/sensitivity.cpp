@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <optional>
 
+#include "lab/identify/parallel.hpp"
 #include "lab/identify/projection.hpp"
 #include "lab/settings.hpp"
 
@@ -45,6 +47,10 @@ class Strength {
                       ? start.values[k]
                       : std::clamp(parameters_[k].off, parameters_[k].low, parameters_[k].high);
     there_ = residual(structure_, off_);
+    without_.resize(std::size_t(residual.trials()));
+    parallel(residual.trials(), residual.threads(), [&](int k) {
+      without_[std::size_t(k)] = residual.problem().full_rate(structure_, off_, k);
+    });
   }
 
   struct Response {
@@ -71,18 +77,19 @@ class Strength {
     const std::size_t components =
         problem.channels().front().components;  // of a norm: those after it
     const std::size_t first = components > 0 ? 1 : 0, count = std::max<std::size_t>(1, components);
-    double sum = 0.0, n = 0.0;
-    for (int k = 0; k < residual_.trials(); ++k) {
-      const Residuals with = problem.full_rate(structure_, values, k),
-                      without = problem.full_rate(structure_, off_, k);
+    std::vector<double> sum(without_.size(), 0.0), n(without_.size(), 0.0);
+    parallel(residual_.trials(), residual_.threads(), [&](int trial) {
+      const auto k = std::size_t(trial);
+      const Residuals with = problem.full_rate(structure_, values, trial);
       for (std::size_t i = 0; i < with.t_s.size(); ++i) {
         if (with.judgement[i] != Judgement::judged) continue;
-        n += 1.0;
+        n[k] += 1.0;
         for (std::size_t c = first; c < first + count; ++c)
-          sum += std::pow(with.channels[c][i] - without.channels[c][i], 2);
+          sum[k] += std::pow(with.channels[c][i] - without_[k].channels[c][i], 2);
       }
-    }
-    return n > 0.0 ? std::sqrt(sum / n) : 0.0;
+    });
+    const double judged = std::reduce(n.begin(), n.end());
+    return judged > 0.0 ? std::sqrt(std::reduce(sum.begin(), sum.end()) / judged) : 0.0;
   }
 
   const Residual& residual_;
@@ -92,6 +99,7 @@ class Strength {
   std::vector<double> off_;
   std::size_t parameter_;
   Eigen::VectorXd there_;
+  std::vector<Residuals> without_;  // by trial
 };
 
 /// Of the starts the one at which a strength shows as well as at half of them, with what it was moved there.

@@ -57,6 +57,19 @@ void Decimator::apply(std::span<const double> in, std::span<double> out) const {
   }
 }
 
+Decimator Decimator::of_every(std::size_t by) const {
+  core::require(by > 0 && stride_ % by == 0, "a filter's stride is a multiple of the step");
+  Decimator out = *this;
+  out.stride_ = stride_ / by;
+  out.taps_.clear();
+  double sum = 0.0;
+  for (std::size_t k = half() % by; k < taps_.size(); k += by)
+    out.taps_.push_back(taps_[k]), sum += taps_[k];
+  out.noise_gain_ = 0.0;
+  for (double& tap : out.taps_) tap /= sum, out.noise_gain_ += tap * tap;
+  return out;
+}
+
 void Decimator::apply_sizes(std::span<const std::size_t> samples, std::span<const double> values,
                             std::span<double> out) const {
   std::ranges::fill(out, 0.0);

@@ -26,6 +26,8 @@ class Decimator {
   /// The sample in the middle of an output's window.
   std::size_t middle(std::size_t output) const { return half() + first(output); }
   void apply(std::span<const double> in, std::span<double> out) const;
+  /// The same filter with the same outputs for every `by`-th sample, from half() % by on. @param by  divides stride().
+  Decimator of_every(std::size_t by) const;
 
   /// Sum of |tap| · value over the samples that are given (in rising order), all others 0.
   void apply_sizes(std::span<const std::size_t> samples, std::span<const double> values,

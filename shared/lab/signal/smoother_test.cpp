@@ -238,6 +238,21 @@ TEST(Decimator, GivesTheOutputsThatWereChosenAsItGaveThemAmongAll) {
   EXPECT_EQ(some.middle(1), all.middle(7));
 }
 
+TEST(Decimator, OfEveryOtherSampleGivesTheSameOutputsOfASlowSignal) {
+  const auto r = sines(2000.0, 1.0, 0.0);
+  Decimator all(5e-4, 100.0);
+  all.choose({0, 3, 8, 60});
+  std::vector<double> fine(4), coarse(4), thinned;
+  all.apply(r.y, fine);
+  const Decimator some = all.of_every(2);
+  for (std::size_t k = all.half() % 2; k < r.y.size(); k += 2) thinned.push_back(r.y[k]);
+  some.apply(thinned, coarse);
+  for (std::size_t j = 0; j < 4; ++j) {
+    EXPECT_NEAR(coarse[j], fine[j], 1e-3 * std::abs(fine[j]) + 1e-9);
+    EXPECT_EQ(all.half() % 2 + 2 * some.middle(j), all.middle(j));
+  }
+}
+
 TEST(Drift, TakesOutAPolynomialAndGivesItBack) {
   std::vector<double> t_s, sd;
   Eigen::VectorXd residual(200);

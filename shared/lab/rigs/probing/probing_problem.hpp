@@ -22,7 +22,10 @@ class ProbingProblem final : public Problem, public FormulaTerms {
  public:
   ProbingProblem(ProbingParameterSpace numbers, std::vector<ProbingRecording> trials, bool turns)
       : numbers_(std::move(numbers)), trials_(std::move(trials)), turns_(turns) {
-    for (const auto& r : trials_) drifts_.push_back(drift_of(r));
+    for (const auto& r : trials_) {
+      drifts_.push_back(drift_of(r));
+      fit_.push_back(fit_samples(r));
+    }
     set_candidates();
     set_channels();
     notes_ = numbers_.notes();
@@ -122,15 +125,17 @@ class ProbingProblem final : public Problem, public FormulaTerms {
     std::vector<double> at_rest_N;  // (or N·m) one per sample of `rest`; empty without dry friction
   };
   double floor_of_effects(const models::ProbingModel& model) const;
-  std::vector<double> dry_at_rest(const models::ProbingModel& model,
-                                  const ProbingRecording& r) const;
+  std::vector<double> dry_at_rest(const models::ProbingModel& model, const SampledMotion& r) const;
+  models::ProbingOutput primary() const {
+    return turns_ ? models::ProbingOutput::torque : models::ProbingOutput::force;
+  }
   Predicted forces(const Structure& structure, std::span<const double> values,
-                   const ProbingRecording& r) const {
+                   const SampledMotion& r, models::ProbingOutput wanted) const {
     const models::ProbingModel model = numbers_.with(structure, values);
     const auto runtime = models::ProbingRuntime::make(model, kProbingRecording.longest_model_m);
     core::require(bool(runtime), "values within their bounds make a model that runs");
     Predicted out;
-    runtime->predict(r.motion, out.forces);
+    runtime->predict(r.motion, out.forces, wanted);
     effects::delay(r.motion.t_s, numbers_.sensor_delay_s(structure, values),
                    turns_ ? out.forces.tz_Nm : out.forces.fz_N);
     out.at_rest_N = dry_at_rest(model, r);
@@ -148,12 +153,13 @@ class ProbingProblem final : public Problem, public FormulaTerms {
   void raw_residuals(const Structure& structure, std::span<const double> values, int k,
                      Eigen::Ref<Eigen::VectorXd> out) const {
     const ProbingRecording& r = trial(k);
-    const auto predicted = forces(structure, values, r);
+    const FitSamples& samples = fit_[std::size_t(k)];
+    const auto predicted = forces(structure, values, samples, primary());
     std::vector<double> thin(r.measured_thin.size());
-    r.decimator.apply(turns_ ? predicted.forces.tz_Nm : predicted.forces.fz_N, thin);
+    samples.decimator.apply(turns_ ? predicted.forces.tz_Nm : predicted.forces.fz_N, thin);
     std::vector<double> either_way(thin.size(), 0.0);
     if (!predicted.at_rest_N.empty())
-      r.decimator.apply_sizes(r.rest, predicted.at_rest_N, either_way);
+      samples.decimator.apply_sizes(samples.rest, predicted.at_rest_N, either_way);
     for (std::size_t j = 0; j < thin.size(); ++j)
       out(Eigen::Index(j)) = beyond(r.measured_thin[j] - thin[j], either_way[j]) / r.sd_thin[j];
   }
@@ -167,6 +173,7 @@ class ProbingProblem final : public Problem, public FormulaTerms {
 
   ProbingParameterSpace numbers_;
   std::vector<ProbingRecording> trials_;
+  std::vector<FitSamples> fit_;  // of each trial
   std::vector<Drift> drifts_;
   std::vector<Candidate> candidates_;
   std::vector<Channel> channels_;

@@ -25,7 +25,7 @@ using core::Result;
 /// At rest dry friction takes whatever value within its size holds the probe (Coulomb's law is
 /// set-valued there), so a residual counts from there on.
 std::vector<double> ProbingProblem::dry_at_rest(const models::ProbingModel& model,
-                                                const ProbingRecording& r) const {
+                                                const SampledMotion& r) const {
   models::ProbingModel dry;
   dry.rotary.viscous_Nms_per_rad = dry.rotary.detent_Nm = 0.0;
   for (const effects::EffectInstance& use : model.effects)
@@ -37,8 +37,8 @@ std::vector<double> ProbingProblem::dry_at_rest(const models::ProbingModel& mode
   for (double& v : back.v_m_s) v = -v;
   for (double& omega : back.omega_rad_s) omega = -omega;
   models::ProbingForces in, out;
-  runtime->predict(r.at_rest, in);
-  runtime->predict(back, out);
+  runtime->predict(r.at_rest, in, primary());
+  runtime->predict(back, out, primary());
   // A rig that only turns has an angle at rest, one that slides has not.
   std::vector<double>& size = in.tz_Nm.empty() ? in.fz_N : in.tz_Nm;
   const std::vector<double>& other = in.tz_Nm.empty() ? out.fz_N : out.tz_Nm;
@@ -107,7 +107,7 @@ effects::Starts ProbingProblem::starts(std::string_view effect,
 Residuals ProbingProblem::full_rate(const Structure& structure, std::span<const double> values,
                                     int k) const {
   const ProbingRecording& r = trial(k);
-  const auto predicted = forces(structure, values, r);
+  const auto predicted = forces(structure, values, r, models::ProbingOutput::both);
   const auto minus = [](const std::vector<double>& a, const std::vector<double>& b) {
     std::vector<double> out(a.size());
     for (std::size_t i = 0; i < a.size(); ++i) out[i] = a[i] - b[i];

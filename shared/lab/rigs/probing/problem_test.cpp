@@ -124,6 +124,26 @@ TEST(ProbingProblem, AModelThatIsRightIsAtTheFloorAndItsNumbersAreFound) {
   EXPECT_LT(f->held_out_rmse, 1.1 * kNoise_N);
 }
 
+/// At 4 kHz a fit predicts for one sample of five; the whole recording is judged.
+TEST(ProbingProblem, AFastRecordingIsFittedByFewerSamplesAndJudgedByAll) {
+  const auto problem =
+      made(set_of([](const Moment& m) { return 1.5 * (m.v_m_s > 0 ? 1.0 : -1.0); }, 4, 4000.0));
+  const auto f = fit(*problem, {{"coulomb_friction"}});
+  ASSERT_TRUE(f) << f.error().what;
+  for (const Estimate& e : f->estimates) {
+    if (e.pointer == "coulomb_friction/friction_N") {
+      EXPECT_NEAR(e.value, 1.5, 0.01);
+    }
+    if (e.pointer.ends_with("stiffness_N_per_m")) {
+      EXPECT_NEAR(e.value, kStiffness, 3.0);
+    }
+  }
+  EXPECT_NEAR(f->rmse, kNoise_N, 0.1 * kNoise_N);
+  EXPECT_EQ(problem->full_rate({}, std::vector<double>(problem->parameters({}).size(), 1.0), 0)
+                .t_s.size(),
+            24000u);
+}
+
 TEST(ProbingProblem, HiddenFrictionIsNamedFromAModelThatIsOffByAFifth) {
   const auto problem =
       made(set_of([](const Moment& m) { return 1.5 * (m.v_m_s > 0 ? 1.0 : -1.0); }));

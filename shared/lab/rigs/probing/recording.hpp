@@ -20,13 +20,20 @@ namespace tractus::lab {
 
 inline constexpr const auto& kProbingRecording = kSettings.probing_recording;
 
-struct ProbingRecording {
+/// A motion, and where its speed is too small to tell its direction: the samples, and the motion there with the least
+/// speed that would be told. Dry friction may then push either way, or not at all.
+struct SampledMotion {
+  effects::ProbingMotion motion;
+  std::vector<std::size_t> rest;
+  effects::ProbingMotion at_rest;
+};
+
+struct ProbingRecording : SampledMotion {
   std::string id;
   bool turns = false;                ///< the torque is judged, not the force
   std::vector<double> recorded_x_m;  ///< as it came, for smoothing anew; empty without sliding
   double x_noise_sd_m = 0.0;         ///< of one recorded position
   double x_rounding_sd_m = 0.0;      ///< the part of it that smoothing does not average away
-  effects::ProbingMotion motion;
   std::vector<double> x_sd_m, v_sd_m_s, a_sd_m_s2;  ///< standard errors of the smoothed motion
   std::vector<double> theta_sd_rad,
       omega_sd_rad_s;            ///< the same of the turning; empty without an angle
@@ -37,10 +44,6 @@ struct ProbingRecording {
   double other_noise_sd = 0.0;
   Decimator decimator{1.0, 1.0};
   std::vector<double> measured_thin;  ///< filtered and thinned
-  /// Where the speed is too small to tell its direction: the samples, and the motion there with the
-  /// least speed that would be told. Dry friction may then push either way, or not at all.
-  std::vector<std::size_t> rest;
-  effects::ProbingMotion at_rest;
   // What a border or a poorly known motion makes of an output; set by weigh().
   std::vector<double> sd_thin;       ///< expected of each output under a true model
   std::vector<Judgement> judgement;  ///< full rate
@@ -49,6 +52,12 @@ struct ProbingRecording {
   double seconds() const { return motion.t_s.back() - motion.t_s.front(); }
   std::size_t size() const { return motion.t_s.size(); }
 };
+
+/// What a fit predicts for: of a recording that is faster than need be only every n-th sample, with the filter for those.
+struct FitSamples : SampledMotion {
+  Decimator decimator{1.0, 1.0};
+};
+FitSamples fit_samples(const ProbingRecording& recording);
 
 /// Prepares a trial, which is used up. @param turns  compare the torque of the turning stage, not the force. @param borders_m  of the given model's layers. Errors: bad_input naming the trial: too few samples, too slow, no motion.
 core::Result<ProbingRecording> prepare(trial::ProbingMeasurement&& trial,

@@ -53,8 +53,8 @@ double ProbingProblem::floor_of_effects(const models::ProbingModel& model) const
   const auto difference = [](const models::ProbingRuntime& of, const effects::ProbingMotion& a,
                              const effects::ProbingMotion& b) {
     models::ProbingForces there, here;
-    of.predict(a, there);
-    of.predict(b, here);
+    of.predict(a, there, models::ProbingOutput::force);
+    of.predict(b, here, models::ProbingOutput::force);
     for (std::size_t k = 0; k < there.fz_N.size(); ++k) there.fz_N[k] -= here.fz_N[k];
     return there.fz_N;
   };
