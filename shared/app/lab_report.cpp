@@ -145,10 +145,10 @@ std::string printed_comparison(const lab_io::LabResult& answer) {
 std::string printed_diagnosis(const lab_io::LabResult& answer) {
   const lab::Diagnosis& d = *answer.content.diagnosis;
   const std::string unit = lab::name_and_unit(answer.json.value("primary", std::string())).unit;
-  const auto [headline, detail] = lab::sentences(d, unit);
+  const lab::StatedVerdict& stated = *answer.content.stated;
   std::string out = fmt::format("{}\n{}\nProbability that this is right: {}.\n\n  {}{}{}\n",
-                                headline, detail, percent(d.probability), left("model", 30),
-                                right("error", 12), right("held out", 13));
+                                stated.headline, stated.detail, percent(stated.probability),
+                                left("model", 30), right("error", 12), right("held out", 13));
   for (const lab::Step& step : d.steps)
     out += "  " +
            left(step.model.starts_with("+ ") ? "+ " + effects::label_of(step.model.substr(2))

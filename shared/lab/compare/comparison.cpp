@@ -108,9 +108,14 @@ Bands bands(const Samples& samples, const Series& series) {
   return welch.bands();
 }
 
+/// What is left holds the noise: less than it was thought to be shows that it is less.
+double floor_within(double floor, double rmse) { return std::min(floor, rmse); }
+
+/// None where all of the signal is thought to be noise.
 double explained(double variance, double rmse, double floor) {
-  const double could = variance - floor * floor;
-  return could > 1e-9 * variance ? (variance - rmse * rmse) / could : kNone;
+  if (!(variance - floor * floor > 1e-9 * variance)) return kNone;
+  const double least = floor_within(floor, rmse);
+  return (variance - rmse * rmse) / (variance - least * least);
 }
 
 ChannelComparison channel(const Samples& samples, std::size_t c) {
@@ -123,12 +128,13 @@ ChannelComparison channel(const Samples& samples, std::size_t c) {
                   r = described(samples, residual);
   ChannelComparison out;
   out.name = samples.channels[c].name;
-  out.noise_floor = samples.channels[c].noise_floor;
   const double variance = m.moments.variance(),
                square = r.moments.variance() + r.moments.mean * r.moments.mean;
   out.rmse = std::sqrt(square);
+  const double floor = samples.channels[c].noise_floor;
+  out.noise_floor = floor_within(floor, out.rmse);
   out.r2 = variance > 0.0 ? 1.0 - square / variance : kNone;
-  out.explained = explained(variance, out.rmse, out.noise_floor);
+  out.explained = explained(variance, out.rmse, floor);
   out.bias = r.moments.mean;
   const double low = std::min(m.sorted.front(), s.sorted.front()),
                high = std::max(m.sorted.back(), s.sorted.back());
@@ -211,8 +217,8 @@ Comparison compare(const Samples& samples) {
     variance += out.channels[c].measured.sd * out.channels[c].measured.sd;
   }
   out.rmse = std::sqrt(squares);
-  out.noise_floor = samples.judged_floor();
-  out.explained = explained(variance, out.rmse, out.noise_floor);
+  out.noise_floor = floor_within(samples.judged_floor(), out.rmse);
+  out.explained = explained(variance, out.rmse, samples.judged_floor());
   out.r2 = variance > 0.0 ? 1.0 - squares / variance : kNone;
   for (const TrialSamples& trial : samples.trials)
     out.trials.push_back(trial_comparison(samples, trial));

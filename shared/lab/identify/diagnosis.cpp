@@ -108,11 +108,16 @@ void add_detection_limits(const Residual& residual, const Selection& selection,
   }
 }
 
+/// Share of the mean square that is left which recorded signals predict; none if they do so in too few trials.
+double predicted_share(const ResidualDependence& rest) {
+  return rest.trials_better >= kAnswer.most_trials ? rest.predictable : 0.0;
+}
+
 /// Is more left than noise: something that recorded signals predict and that is material, or an error so far above the
 /// floor that no noise explains it?
 bool more_is_missing(const ResidualDependence& rest, const Fit& fit) {
   const double material = 1.0 - std::pow(1.0 - kSettings.selection.least_fall, 2.0);
-  return (rest.predictable > material && rest.trials_better >= kAnswer.most_trials) ||
+  return predicted_share(rest) > material ||
          fit.held_out_rmse > kAnswer.far_above_floor * fit.noise_floor;
 }
 
@@ -128,9 +133,8 @@ bool explain_most(const ResidualDependence& rest, const Fit& base, const Fit& fi
 /// Probability that more is missing than the model has: by the error over the floor, and by what signals predict of it.
 double probability_of_more(const ResidualDependence& rest, const Fit& fit) {
   const double above = std::log(std::max(1.0, fit.held_out_rmse / fit.noise_floor));
-  const double predicted = rest.trials_better >= kAnswer.most_trials ? rest.predictable : 0.0;
   const double odds = kAnswer.more_log_odds + kAnswer.more_per_log_error * above +
-                      kAnswer.more_per_share * predicted;
+                      kAnswer.more_per_share * predicted_share(rest);
   return 1.0 / (1.0 + std::exp(-odds));
 }
 
@@ -170,8 +174,6 @@ Result<Diagnosis> diagnose(const Problem& problem, const DiagnoseOptions& option
   Solution& chosen = selection.chosen();
   ResidualDependence rest = residual_dependence(residual, chosen);
   out.final_fit = chosen.structure.effects.empty() ? out.base_fit : report(residual, chosen, true);
-  // A fit that leaves less than the noise was thought to be shows that it is less.
-  out.final_fit.noise_floor = std::min(out.final_fit.noise_floor, out.final_fit.rmse);
   out.base.noise_floor = std::min(out.base.noise_floor, out.final_fit.noise_floor);
   const bool more = more_is_missing(rest, out.final_fit);
   const bool named = !chosen.structure.effects.empty() &&
@@ -198,10 +200,8 @@ Result<Diagnosis> diagnose(const Problem& problem, const DiagnoseOptions& option
   out.probability = stated_probability(out, rest, posterior.of_structure(final.structure));
   out.steps = named ? steps(residual, selection, out)
                     : std::vector<Step>{{"base", out.base.rmse, out.base.held_out_rmse}};
-  if (more) {
-    out.depends_on = rest.words;
-    out.dependence_explained = rest.predictable;
-  }
+  if (more) out.depends_on = rest.words;
+  out.dependence_explained = predicted_share(rest);
   if (!selection.refused().empty())
     out.notes.push_back(
         fmt::format("{} would bring the residual to the floor, but what it takes out follows the "

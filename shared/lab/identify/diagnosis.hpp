@@ -92,7 +92,7 @@ struct Diagnosis {
   std::vector<Hypothesis> hypotheses;  ///< those left, most probable first, at most three
   std::optional<DiscriminatingExperiment> discriminating_experiment;
   std::string depends_on;  ///< what an unexplained rest varies with, in words; else empty
-  /// Share of the rest's mean square that recorded signals predict in held-out trials; 0 unless more is missing.
+  /// Share of the rest's mean square that recorded signals predict in held-out trials; 0 if in too few of them.
   double dependence_explained = 0.0;
   std::vector<std::string> notes;  ///< on the recording and on how the answer was reached
   Fit base_fit;                    ///< of the model as given

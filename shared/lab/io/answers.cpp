@@ -179,13 +179,14 @@ Result<LabResult> diagnosed(const Case& opened, const DiagnoseRequest& wish,
   out.json = lab::to_json(diagnosis);
   const std::string& primary = opened.problem->channels().front().name;
   const auto [headline, detail] = lab::sentences(diagnosis, lab::name_and_unit(primary).unit);
+  out.content.stated = {diagnosis.verdict, diagnosis.probability, headline, detail};
   if (!out.programs.empty()) out.json["settle"]["programs"] = to_json(out.programs);
   out.json["primary"] = primary;
-  out.json["headline"] = headline;
-  out.json["detail"] = detail;
   if (out.discovery) out.json["discovery"] = lab::to_json(*out.discovery);
   out.model = opened.problem->model(diagnosis.final_fit.structure, diagnosis.final_fit.values);
   if (opened.torque) TRY(add_torque(*opened.torque, diagnosis, wish, out, {}));
+  out.json["headline"] = out.content.stated->headline;
+  out.json["detail"] = out.content.stated->detail;
   if (wish.report) {
     compare_given(opened, out);
     compare_better(opened, diagnosis.final_fit, out);

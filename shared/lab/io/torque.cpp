@@ -77,10 +77,11 @@ core::Result<void> add_torque(const lab::Problem& torque, const lab::Diagnosis& 
   const lab::Diagnosis both = joined(force, found);
   const Json of_both = lab::to_json(both);
   for (const char* key : {"verdict", "probability", "effects"}) out.json[key] = of_both[key];
+  lab::StatedVerdict& stated = *out.content.stated;
+  stated.verdict = both.verdict, stated.probability = both.probability;
   if (!found.effects.empty() || more(found.verdict))
-    out.json["headline"] = lab::sentences(both, "").headline;
-  out.json["detail"] =
-      out.json["detail"].get<std::string>() + " About the probe's axis: " + headline + " " + detail;
+    stated.headline = lab::sentences(both, "").headline;
+  stated.detail += " About the probe's axis: " + headline + " " + detail;
   const Json turned = torque.model(found.final_fit.structure, found.final_fit.values);
   (*out.model)["base"]["rotary"] = turned["base"]["rotary"];
   for (const Json& effect : turned["effects"])

@@ -19,6 +19,13 @@ struct Side {
   Comparison comparison;
 };
 
+/// What a diagnosis comes to: of all channels that were judged, the torque about the axis beside the force.
+struct StatedVerdict {
+  Verdict verdict = Verdict::complete;
+  double probability = 0.0;
+  std::string headline, detail;
+};
+
 /// What a report may hold; what is absent is left out of the page.
 struct ReportContent {
   std::string model_name, set_name;
@@ -28,6 +35,7 @@ struct ReportContent {
   std::string before_name = "as given";  ///< or "refitted", where its own numbers were fitted first
   std::optional<Side> better;            ///< refitted, with the effects that were found or added
   std::optional<Diagnosis> diagnosis;
+  std::optional<StatedVerdict> stated;  ///< with a diagnosis
   std::optional<Fit> fit;            ///< of the better model, when nothing was diagnosed
   std::vector<Parameter> start;      ///< the better model's parameters as they were before the fit
   std::vector<Candidate> catalogue;  ///< for equations and units

@@ -72,6 +72,8 @@ ReportContent content() {
   d.final_fit.estimates = {{"/base/layers/0/stiffness_N_per_m", 4100.0, 12.0, true, false},
                            {"/base/layers/0/equilibrium_m", 0.0, INFINITY, false, false},
                            {"coulomb_friction/friction_N", 2.31, 0.02, true, false}};
+  const VerdictText said = sentences(d, "N");
+  out.stated = {d.verdict, d.probability, said.headline, said.detail};
   out.diagnosis = d;
   out.start = {{"/base/layers/0/stiffness_N_per_m", 4000.0, 0.0, 1e6, 1.0}};
   return out;
@@ -121,6 +123,7 @@ TEST(Report, EscapesNamesFromFiles) {
 TEST(Report, LeavesOutWhatThereIsNot) {
   ReportContent bare = content();
   bare.diagnosis.reset();
+  bare.stated.reset();
   bare.better.reset();
   const std::string html = report(bare);
   EXPECT_HOLDS(html, "The model is off by 2.31 N.");

@@ -99,7 +99,9 @@ std::string bars(const Step& step, const std::string& unit, double largest, doub
 std::string verdict(const ReportContent& content) {
   const Comparison& given = content.before.comparison;
   const std::string& unit = given.judged_unit;
-  const VerdictText said = content.diagnosis ? sentences(*content.diagnosis, unit) : plain(content);
+  const VerdictText said = content.stated
+                               ? VerdictText{content.stated->headline, content.stated->detail}
+                               : plain(content);
   std::string figures = key_figure("Error as given", figure(content.given_rmse, unit),
                                    against_floor(content.given_rmse, given.noise_floor));
   if (content.diagnosis && !content.diagnosis->effects.empty())
@@ -115,13 +117,13 @@ std::string verdict(const ReportContent& content) {
                           against_floor(content.better->comparison.rmse, given.noise_floor));
   }
   figures += key_figure("Noise floor", figure(given.noise_floor, unit), "of these measurements");
-  if (content.diagnosis)
-    figures += key_figure("Probability", percent(content.diagnosis->probability),
+  if (content.stated)
+    figures += key_figure("Probability", percent(content.stated->probability),
                           "that this answer is right");
   return fmt::format(
       "<section class=\"verdict {}\">\n<h2>{}</h2>\n<p>{}</p>\n"
       "<dl class=\"figures\">\n{}</dl>\n</section>\n",
-      content.diagnosis ? name(content.diagnosis->verdict) : "", escaped(said.headline),
+      content.stated ? name(content.stated->verdict) : "", escaped(said.headline),
       unbroken(escaped(said.detail), unit), figures);
 }
 

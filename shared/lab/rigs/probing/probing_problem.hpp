@@ -100,16 +100,17 @@ class ProbingProblem final : public Problem, public FormulaTerms {
 
   /// Weighs the residuals anew with the borders and dampings that these values have.
   void focus(std::span<const double> values) {
-    const auto law = numbers_.with({}, values).law(kProbingRecording.longest_model_m);
+    const models::ProbingModel given = numbers_.with({}, values);
+    const auto law = given.law(kProbingRecording.longest_model_m);
     core::require(bool(law), "a fitted model runs");
     for (std::size_t k = 0; k < trials_.size(); ++k) {
-      weigh(*law, trials_[k]);
+      weigh(*law, variance_by_effects(given, trials_[k]), trials_[k]);
       drifts_[k] = drift_of(trials_[k]);
     }
     set_channels();
     floor_of_bone_ = channels_.front().noise_floor;
     channels_.front().noise_floor =
-        std::hypot(floor_of_bone_, floor_of_effects(numbers_.with({}, values)));
+        std::hypot(floor_of_bone_, floor_of_effects(given));
   }
 
  private:
@@ -124,6 +125,9 @@ class ProbingProblem final : public Problem, public FormulaTerms {
     models::ProbingForces forces;
     std::vector<double> at_rest_N;  // (or N·m) one per sample of `rest`; empty without dry friction
   };
+  /// Variance of the force by what the motion's errors make of a model's effects, sample by sample.
+  std::vector<double> variance_by_effects(const models::ProbingModel& model,
+                                          const ProbingRecording& r) const;
   double floor_of_effects(const models::ProbingModel& model) const;
   std::vector<double> dry_at_rest(const models::ProbingModel& model, const SampledMotion& r) const;
   models::ProbingOutput primary() const {

@@ -380,9 +380,11 @@ void estimate_noise(ProbingRecording& r, std::span<const double> residual,
   r.noise_sd = std::max(r.noise_sd, std::sqrt(variance));
 }
 
-void weigh(const laws::ProbingLaw& law, ProbingRecording& r) {
+void weigh(const laws::ProbingLaw& law, std::span<const double> by_effects, ProbingRecording& r) {
   const std::size_t n = r.size();
-  const std::vector<double> motion_variance = variance_by_motion(law, r);
+  const std::vector<double> by_bone = variance_by_motion(law, r);
+  std::vector<double> motion_variance = by_bone;
+  for (std::size_t k = 0; k < n; ++k) motion_variance[k] += by_effects[k];
   const auto& m = r.motion;
   const auto found = jumps(law, r);
   r.judgement.assign(n, Judgement::judged);
@@ -398,8 +400,11 @@ void weigh(const laws::ProbingLaw& law, ProbingRecording& r) {
   const double most =
       std::max(*half_way, kProbingRecording.well_known_share * kProbingRecording.well_known_share *
                               r.noise_sd * r.noise_sd);
+  // Nor is it known at the ends, where one side's samples alone tell speed: no output of the filter has its middle there.
+  const std::size_t end = std::min(n, r.decimator.half());
   for (std::size_t k = 0; k < n; ++k)
-    if (motion_variance[k] > most) r.judgement[k] = Judgement::unknown_motion;
+    if (motion_variance[k] > most || k < end || k + end >= n)
+      r.judgement[k] = Judgement::unknown_motion;
   // What is unknown of a sample because nobody can tell on which side of a border it lies: a probe may stand there for long.
   std::vector<double> at_border(n, 0.0);
   const bool slides = !r.recorded_x_m.empty();
@@ -424,7 +429,7 @@ void weigh(const laws::ProbingLaw& law, ProbingRecording& r) {
   double sum = 0.0, count = 0.0;
   for (std::size_t k = 0; k < n; ++k)
     if (r.judgement[k] == Judgement::judged)
-      sum += r.noise_sd * r.noise_sd + motion_variance[k], count += 1.0;
+      sum += r.noise_sd * r.noise_sd + by_bone[k], count += 1.0;
   r.floor = count > 0.0 ? std::sqrt(sum / count) : r.noise_sd;
 }
 

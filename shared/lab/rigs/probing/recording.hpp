@@ -47,7 +47,7 @@ struct ProbingRecording : SampledMotion {
   // What a border or a poorly known motion makes of an output; set by weigh().
   std::vector<double> sd_thin;       ///< expected of each output under a true model
   std::vector<Judgement> judgement;  ///< full rate
-  double floor = 0.0;                ///< rmse of the judged samples under a true model
+  double floor = 0.0;                ///< rmse of the judged samples under a true model without effects
 
   double seconds() const { return motion.t_s.back() - motion.t_s.front(); }
   std::size_t size() const { return motion.t_s.size(); }
@@ -86,7 +86,8 @@ void estimate_noise(ProbingRecording& recording, std::span<const double> residua
 
 /// What is expected of each output if `law` were true: the sensor's noise, the motion's noise as
 /// the law passes it on, and near a border of layers the error of a sample that is taken on the
-/// wrong side.
-void weigh(const laws::ProbingLaw& law, ProbingRecording& recording);
+/// wrong side. @param by_effects  variance of each sample by what the motion's noise makes of the model's effects.
+void weigh(const laws::ProbingLaw& law, std::span<const double> by_effects,
+           ProbingRecording& recording);
 
 }  // namespace tractus::lab

@@ -40,11 +40,12 @@ void ProbingProblem::estimate_noise(std::span<const double> values) {
   }
 }
 
-/// What the motion's errors make of a model's effects, root mean square over the judged samples: the speed's, then the
-/// acceleration's standard error is added to one sample and taken from the next, and what the prediction differs by,
-/// beyond that of the bone alone, adds in squares.
-double ProbingProblem::floor_of_effects(const models::ProbingModel& model) const {
-  if (turns_ || model.effects.empty()) return 0.0;
+/// The speed's, then the acceleration's standard error is added to one sample and taken from the next, and what the
+/// prediction differs by, beyond that of the bone alone, adds in squares.
+std::vector<double> ProbingProblem::variance_by_effects(const models::ProbingModel& model,
+                                                        const ProbingRecording& r) const {
+  std::vector<double> variance(r.size(), 0.0);
+  if (turns_ || model.effects.empty()) return variance;
   models::ProbingModel bone = model;
   bone.effects.clear();
   const auto runtime = models::ProbingRuntime::make(model, kProbingRecording.longest_model_m),
@@ -58,20 +59,25 @@ double ProbingProblem::floor_of_effects(const models::ProbingModel& model) const
     for (std::size_t k = 0; k < there.fz_N.size(); ++k) there.fz_N[k] -= here.fz_N[k];
     return there.fz_N;
   };
+  const auto move = [&](auto member, const std::vector<double>& sd) {
+    effects::ProbingMotion motion = r.motion;
+    for (std::size_t k = 0; k < sd.size(); ++k) (motion.*member)[k] += k % 2 == 0 ? sd[k] : -sd[k];
+    const auto all = difference(*runtime, motion, r.motion),
+               own = difference(*of_bone, motion, r.motion);
+    for (std::size_t k = 0; k < variance.size(); ++k)
+      variance[k] += std::max(0.0, all[k] * all[k] - own[k] * own[k]);
+  };
+  move(&effects::ProbingMotion::v_m_s, r.v_sd_m_s);
+  move(&effects::ProbingMotion::a_m_s2, r.a_sd_m_s2);
+  return variance;
+}
+
+/// What the motion's errors make of a model's effects, root mean square over the judged samples.
+double ProbingProblem::floor_of_effects(const models::ProbingModel& model) const {
+  if (turns_ || model.effects.empty()) return 0.0;
   double sum = 0.0, count = 0.0;
   for (const ProbingRecording& r : trials_) {
-    std::vector<double> variance(r.size(), 0.0);
-    const auto move = [&](auto member, const std::vector<double>& sd) {
-      effects::ProbingMotion motion = r.motion;
-      for (std::size_t k = 0; k < sd.size(); ++k)
-        (motion.*member)[k] += k % 2 == 0 ? sd[k] : -sd[k];
-      const auto all = difference(*runtime, motion, r.motion),
-                 own = difference(*of_bone, motion, r.motion);
-      for (std::size_t k = 0; k < variance.size(); ++k)
-        variance[k] += std::max(0.0, all[k] * all[k] - own[k] * own[k]);
-    };
-    move(&effects::ProbingMotion::v_m_s, r.v_sd_m_s);
-    move(&effects::ProbingMotion::a_m_s2, r.a_sd_m_s2);
+    const std::vector<double> variance = variance_by_effects(model, r);
     for (std::size_t k = 0; k < r.size(); ++k)
       if (r.judgement[k] == Judgement::judged) sum += variance[k], count += 1.0;
   }
