@@ -57,6 +57,17 @@ TEST(Comparison, MatchesAHandCalculation) {
   EXPECT_NEAR(out.phases[0].rmse, std::sqrt(2.0), 1e-12);
 }
 
+/// What is left holds the noise.
+TEST(Comparison, StatesNoFloorAboveWhatIsLeft) {
+  Samples samples = eight();
+  samples.channels[0].noise_floor = 0.0;
+  const Comparison sure = compare(samples);
+  samples.channels[0].noise_floor = 1.5 * sure.rmse;
+  const Comparison unsure = compare(samples);
+  EXPECT_DOUBLE_EQ(unsure.channels[0].noise_floor, sure.rmse);
+  EXPECT_DOUBLE_EQ(unsure.noise_floor, sure.rmse);
+}
+
 TEST(Comparison, CannotExplainWhatIsNoiseAlone) {
   Samples samples = eight();
   samples.channels[0].noise_floor = std::sqrt(5.0);

@@ -124,6 +124,46 @@ TEST(ProbingProblem, AModelThatIsRightIsAtTheFloorAndItsNumbersAreFound) {
   EXPECT_LT(f->held_out_rmse, 1.1 * kNoise_N);
 }
 
+/// A filter of 100 outputs a second needs 22 ms on either side.
+TEST(ProbingProblem, TheEndsOfARecordingAreNotJudged) {
+  const auto problem = made(set_of([](const Moment&) { return 0.0; }, 4, 1000.0));
+  std::vector<double> values;
+  for (const Parameter& p : problem->parameters({})) values.push_back(p.start);
+  const auto judged = problem->full_rate({}, values, 0).judgement;
+  ASSERT_EQ(judged.size(), 6000u);
+  for (std::size_t k = 0; k < 22; ++k) {
+    EXPECT_EQ(judged[k], Judgement::unknown_motion) << k;
+    EXPECT_EQ(judged[5999 - k], Judgement::unknown_motion) << k;
+  }
+  EXPECT_EQ(judged[22], Judgement::judged);
+  EXPECT_EQ(judged[5977], Judgement::judged);
+}
+
+/// Jolted once, 3 s after the start: a probe with mass is not judged there, one without is.
+TEST(ProbingProblem, AHeavyProbeIsNotJudgedWhereItsAccelerationIsNotKnown) {
+  constexpr double kLittle = 5.0;  // N·s/m: what is not known of the speed makes no force
+  const auto at_the_jolt = [](double mass_kg) {
+    trial::ProbingSet set =
+        set_of([](const Moment& m) { return (kLittle - kDamping) * m.v_m_s; }, 4, 1000.0);
+    for (std::size_t k = 0; k < set.trials.size(); ++k)
+      for (std::size_t i = 0; i < set.trials[k].t_s.size(); ++i) {
+        const double t_s = set.trials[k].t_s[i], u = (t_s - 3.0) / 0.004, h_s = 1e-4;
+        const auto speed = [&](double at_s) { return moment(int(k), at_s).v_m_s; };
+        set.trials[k].x_m[i] += 1e-4 * std::exp(-u * u);
+        set.trials[k].fz_N[i] += mass_kg * ((speed(t_s + h_s) - speed(t_s - h_s)) / (2.0 * h_s) +
+                                            1e-4 * (4.0 * u * u - 2.0) / 1.6e-5 * std::exp(-u * u));
+      }
+    models::ProbingModel model = model_of(kStiffness, kLittle);
+    model.effects = {{"inertia", {mass_kg}}};
+    const auto problem = made(std::move(set), model);
+    std::vector<double> values;
+    for (const Parameter& p : problem->parameters({})) values.push_back(p.start);
+    return problem->full_rate({}, values, 0).judgement[3000];
+  };
+  EXPECT_EQ(at_the_jolt(1e-5), Judgement::judged);
+  EXPECT_EQ(at_the_jolt(0.2), Judgement::unknown_motion);
+}
+
 /// At 4 kHz a fit predicts for one sample of five; the whole recording is judged.
 TEST(ProbingProblem, AFastRecordingIsFittedByFewerSamplesAndJudgedByAll) {
   const auto problem =
