@@ -180,6 +180,8 @@ RouteInfo taking(RouteInfo route, std::string body, std::uint64_t limit_bytes,
 
 /// Restricts a report page with a Content-Security-Policy: no scripts, no other resources.
 http::Response as_report(http::Response response);
+/// Sends the browser to an address; 303 after a POST.
+http::Response redirection(const std::string& address, int status = 302);
 http::Response json_response(const core::Json& json, int status = 200);
 /// The HTTP status of an error code; the only place that defines this mapping.
 int status_of(core::Errc code);
