@@ -14,7 +14,7 @@ constexpr std::size_t kMaxDetail_bytes = 4096;
 
 /// The fields of bodies that are kept as they came, sorted. None of them may ever hold a secret:
 /// what a new route calls otherwise is not kept until it is named here.
-constexpr std::array<std::string_view, 106> kKept{"account",
+constexpr std::array<std::string_view, 107> kKept{"account",
                                                   "accounts",
                                                   "add",
                                                   "adequate",
@@ -47,6 +47,7 @@ constexpr std::array<std::string_view, 106> kKept{"account",
                                                   "deployments",
                                                   "depth_m",
                                                   "due_utc_us",
+                                                  "endpoint",
                                                   "entry_m",
                                                   "experience_years",
                                                   "expires_utc_us",

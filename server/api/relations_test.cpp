@@ -270,6 +270,8 @@ TEST_F(Relations, ARouteThatChangesSomethingNamesEveryEndOrIsOfOneObject) {
       "setNotifications", "testNotification", "addWebhook", "removeWebhook", "testWebhook",
       // learning platforms, by administrators; a launch is of the person whom it names
       "addLtiPlatform", "removeLtiPlatform", "ltiLoginForm", "ltiLaunch",
+      // the learning record store, by administrators
+      "setRecordStore", "removeRecordStore",
       // an account, by administrators; a badge also by those who teach its bearer
       "eraseAccount", "addAccount", "setAccountState", "setAccountRole", "resetPassword",
       "setBadge", "linkSubject",

@@ -62,7 +62,7 @@ Run serve_command(CLI::App& command) {
                      "Settings file of the mail server by which people are told of events");
   const auto webhook_networks = std::make_shared<std::vector<std::string>>();
   command.add_option("--webhook-network", *webhook_networks,
-                     "Private address or network (ADDRESS/BITS) whose webhooks and learning platforms "
+                     "Private address or network (ADDRESS/BITS) whose webhooks, learning platforms "
                      "and record stores the server "
                      "calls; may be repeated "
                      "(default: only public addresses)");

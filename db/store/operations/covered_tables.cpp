@@ -24,6 +24,7 @@ const std::vector<CoveredTable>& covered_tables() {
        {"id"},
        {"issuer", "client_id", "deployments", "authorization_url", "token_url", "keys_url",
         "match_email", "made_utc_us", "made_by"}},
+      {"record_stores", {"id"}, {"endpoint", "key", "secret", "made_utc_us", "made_by"}},
       {"cohorts", {"id"}, {"name", "made_utc_us", "made_by"}},
       {"cohort_people", {"cohort_id", "account_id"}, {"part", "since_utc_us"}},
       {"cohort_invitations", {"cohort_id", "account_name"}, {"made_utc_us", "made_by"}},

@@ -1,5 +1,5 @@
-/// The outbox: messages to people (e-mail), to programs (webhooks) and scores to learning platforms
-/// (LTI), each with an id that stays the same when it is sent again, so that a receiver recognises
+/// The outbox: messages to people (e-mail), to programs (webhooks), scores to learning platforms (LTI)
+/// and statements to a learning record store (xAPI), each with an id that stays the same when it is sent again, so that a receiver recognises
 /// it.
 #pragma once
 
@@ -10,12 +10,13 @@ namespace tractus::store {
 enum class Channel {
   mail,
   webhook,
-  lti,  ///< a score of an assignment to a learning platform
+  lti,   ///< a score of an assignment to a learning platform
+  xapi,  ///< a statement of a trial to a learning record store
 };
 constexpr auto words(Channel) {
   using enum Channel;
   return std::to_array<core::Word<Channel>>(
-      {{mail, "mail"}, {webhook, "webhook"}, {lti, "lti"}});
+      {{mail, "mail"}, {webhook, "webhook"}, {lti, "lti"}, {xapi, "xapi"}});
 }
 enum class DeliveryState {
   waiting,
@@ -32,7 +33,7 @@ constexpr auto words(DeliveryState) {
 struct Delivery {
   std::string id;
   Channel channel = Channel::mail;
-  std::string recipient;  ///< id of the account, the webhook or the platform
+  std::string recipient;  ///< id of the account, the webhook, the platform or the store
   DeliveryState state = DeliveryState::waiting;
   std::int64_t attempts = 0;
   std::int64_t made_utc_us = 0, due_utc_us = 0, changed_utc_us = 0;
@@ -69,7 +70,7 @@ core::Result<std::vector<NotificationEvent>> events_of(Reading& tx, const std::s
 core::Result<void> end_delivery(Writing& tx, const Delivery& delivery, DeliveryState state,
                                 const std::string& error, std::int64_t now_utc_us);
 /// Tries it again later, and with it every delivery to the same receiver: the mail server, the
-/// webhook or the platform.
+/// webhook, the platform or the store.
 core::Result<void> postpone_delivery(Writing& tx, const Delivery& delivery,
                                      const std::string& error, std::int64_t now_utc_us);
 

@@ -79,8 +79,12 @@ std::vector<ErasureStep> account_steps() {
 
 std::vector<ErasureStep> erased_trial_steps() {
   std::vector<ErasureStep> out;
+  out.push_back({"deliveries", kErase,
+                 "delete from deliveries where id in (select delivery_id from record_statements "
+                 "where trial_id in " +
+                     kGone + ")"});
   for (const char* table :
-       {"ratings", "rating_requests", "reference_trials", "trial_comments",
+       {"record_statements", "ratings", "rating_requests", "reference_trials", "trial_comments",
         "trial_clocks", "trial_metrics", "trial_entries", "study_trials"})
     out.push_back(
         {table, kErase, std::string("delete from ") + table + " where trial_id in " + kGone});
@@ -163,7 +167,8 @@ std::vector<ErasureStep> name_steps() {
            {"analysis_plans", "made_by"},   {"analyses", "made_by"},
            {"models", "made_by"},           {"measurement_sets", "made_by"},
            {"lab_runs", "made_by"},         {"webhooks", "made_by"},
-           {"lti_platforms", "made_by"},    {"group_rules", "made_by"}})
+           {"lti_platforms", "made_by"},    {"record_stores", "made_by"},
+           {"group_rules", "made_by"}})
     out.push_back(renamed(table, column));
   out.push_back({"study_events",
                  {},

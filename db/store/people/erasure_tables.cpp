@@ -114,6 +114,10 @@ const std::vector<TableDecision>& table_decisions() {
       {"learning", "lti_line_items", removed, removed,
        "places in the gradebooks of learning platforms", ""},
       {"learning", "lti_keys", none, none, "", kNobody},
+      {"learning", "record_stores", changed, changed,
+       "learning record stores that the person stated", kNameOfMaker},
+      {"learning", "record_statements", removed, kept, "statements of trials to a record store",
+       kPseudonym},
       {"operations", "redactions", kept, kept, "digests of rows of the audit trail", kNobody},
       {"operations", "schema_versions", none, none, "", kNobody}};
   return kDecisions;

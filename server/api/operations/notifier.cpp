@@ -90,12 +90,14 @@ core::Result<void> Notifier::look_for_learning(std::int64_t now_utc_us) {
   bool any = false;
   TRY(backend_.store.read([&](store::Reading& tx) -> core::Result<void> {
     const auto scores = TRY(store::changed_line_items(tx));
-    any = !scores.empty();
+    const auto trials = TRY(store::trials_to_state(tx));
+    any = !scores.empty() || !trials.empty();
     return {};
   }));
   if (!any) return {};
   return backend_.store.write([&](store::Writing& tx) -> core::Result<void> {
-    return store::queue_scores(tx, now_utc_us);
+    TRY(store::queue_scores(tx, now_utc_us));
+    return store::queue_statements(tx, now_utc_us);
   });
 }
 
@@ -136,6 +138,8 @@ core::Result<void> Notifier::attempt(const Delivery& delivery) {
       return attempt_call(delivery);
     case Channel::lti:
       return attempt_score(delivery);
+    case Channel::xapi:
+      return attempt_statement(delivery);
   }
   return withdrawn("the channel is unknown");
 }
@@ -193,6 +197,26 @@ core::Result<void> Notifier::attempt_score(const Delivery& delivery) {
   TRY(settings_.score(call));
   return backend_.store.write(
       [&](store::Writing& tx) { return store::settle_line_item(tx, call.what); });
+}
+
+core::Result<void> Notifier::attempt_statement(const Delivery& delivery) {
+  StatementCall call{.to = {}, .statement = {}, .networks = settings_.networks};
+  TRY(backend_.store.read([&](store::Reading& tx) -> core::Result<void> {
+    const auto to = TRY(store::record_store(tx));
+    const auto stated = TRY(store::stated_trial(tx, delivery.id));
+    if (!to || !stated) return withdrawn("the results are held, or the store was removed");
+    const auto trial = TRY(released_trial(tx, *stated, backend_.pseudonym_key));
+    if (!trial) return withdrawn("the person does not consent any more");
+    call.to = *to;
+    call.to.secret = TRY(backend_.secrets.opened(to->secret));
+    call.statement = statement_json({.id = delivery.id,
+                                     .base = settings_.base,
+                                     .title = TRY(store::series_title(tx, stated->study_id)),
+                                     .assignment_id = stated->study_id,
+                                     .trial = *trial});
+    return {};
+  }));
+  return settings_.state(call);
 }
 
 core::Result<void> Notifier::note_outcome(const Delivery& delivery,

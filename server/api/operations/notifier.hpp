@@ -10,6 +10,7 @@
 #include "db/store/operations/deliveries.hpp"
 #include "server/api/backend.hpp"
 #include "server/api/learning/score_call.hpp"
+#include "server/api/learning/statement.hpp"
 #include "server/api/operations/mail.hpp"
 #include "server/api/operations/webhook_call.hpp"
 
@@ -22,6 +23,7 @@ struct NotifierSettings {
   std::function<core::Result<void>(const MailSettings&, const Mail&)> send = send_mail;
   std::function<core::Result<void>(const WebhookCall&)> call = call_webhook;
   std::function<core::Result<void>(const ScoreCall&)> score = post_score;
+  std::function<core::Result<void>(const StatementCall&)> state = post_statement;
 };
 
 class Notifier {
@@ -37,7 +39,7 @@ class Notifier {
   void wake();
   const NotifierSettings& settings() const { return settings_; }
 
-  /// Notes due assignments and queues the deliveries of new events, and scores.
+  /// Notes due assignments and queues the deliveries of new events, scores and statements.
   core::Result<void> collect();
   /// Sends what is due on a channel; returns the number of attempts.
   core::Result<std::size_t> deliver(store::Channel channel);
@@ -47,6 +49,7 @@ class Notifier {
   core::Result<void> attempt_mail(const store::Delivery& delivery);
   core::Result<void> attempt_call(const store::Delivery& delivery);
   core::Result<void> attempt_score(const store::Delivery& delivery);
+  core::Result<void> attempt_statement(const store::Delivery& delivery);
   core::Result<void> note_outcome(const store::Delivery& delivery,
                                   const core::Result<void>& outcome);
   core::Result<void> give_up(const store::Delivery& delivery, const std::string& why);
