@@ -226,7 +226,6 @@ TEST_F(Launches, OpenNoAccountOfAnAdministratorWithOneTimeCodesOrDisabled) {
   link(platform, "tom", "person-7");
   const auto set = [&](const std::function<void(store::Account&)>& change) {
     ASSERT_TRUE(store_.write([&](store::Writing& tx) -> core::Result<void> {
-      const store::AuditScope acting({.who = "test", .what = "change"});
       auto account = TRY(store::account_of(tx, "tom"));
       change(*account);
       return store::set_account(tx, *account);

@@ -11,7 +11,7 @@ using core::Json;
 using testing::LtiTest;
 using Mood = testing::Provider::Mood;
 
-constexpr std::int64_t kMinute_us = 60'000'000, kDay_us = 24 * 60 * kMinute_us;
+constexpr std::int64_t kScoreMinute_us = 60'000'000, kScoreDay_us = 24 * 60 * kScoreMinute_us;
 
 class Scores : public LtiTest {
  protected:
@@ -95,11 +95,11 @@ TEST_F(Scores, AreKeptForThreeDaysWhileThePlatformAnswers500ThenGivenUpAloud) {
   assess("assessed", true);
   refusal_ = core::Error{core::Errc::unavailable, "the learning platform answered 500"};
   const std::int64_t begun = now_;
-  for (; now_ < begun + kDay_us; now_ += kMinute_us) run();
+  for (; now_ < begun + kScoreDay_us; now_ += kScoreMinute_us) run();
   // By hand, as for webhooks: after 0, 1, 4, 13, 40 min, then every 80 min: 40 + 80 k <= 1440.
   EXPECT_EQ(scores_.size(), 5u + 17u);
   EXPECT_EQ(outbox()["waiting"], 1);
-  for (; now_ < begun + 4 * kDay_us; now_ += 10 * kMinute_us) run();
+  for (; now_ < begun + 4 * kScoreDay_us; now_ += 10 * kScoreMinute_us) run();
   EXPECT_EQ(outbox()["waiting"], 0);
   EXPECT_EQ(outbox()["given_up_within_week"], 1);
   const auto row = json(get("ann", "/audit?limit=1"))["rows"][0];
@@ -121,13 +121,13 @@ TEST_F(Scores, ThatWaitAreTheNewestAndAreWithdrawnWhenTheResultsAreHeldAgain) {
   refusal_ = core::Error{core::Errc::unavailable, "away"};
   run();
   assess("assessed", true);
-  now_ += kMinute_us;
+  now_ += kScoreMinute_us;
   run();
   ASSERT_EQ(scores_.size(), 2u);
   EXPECT_EQ(scores_[1].what.score.right, 1u);
   EXPECT_EQ(outbox()["waiting"], 1) << "one delivery, whatever changed meanwhile";
   release("held");
-  now_ += 3 * kMinute_us;
+  now_ += 3 * kScoreMinute_us;
   run();
   EXPECT_EQ(scores_.size(), 2u);
   EXPECT_EQ(outbox()["deliveries"][0]["state"], "withdrawn");

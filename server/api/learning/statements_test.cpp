@@ -10,7 +10,8 @@ namespace {
 using core::Json;
 using testing::PeopleTest;
 
-constexpr std::int64_t kMinute = 60'000'000, kDay = 24 * 60 * kMinute;
+constexpr std::int64_t kStatementMinute_us = 60'000'000,
+                       kStatementDay_us = 24 * 60 * kStatementMinute_us;
 
 class Statements : public PeopleTest {
  protected:
@@ -129,7 +130,7 @@ TEST_F(Statements, AreOfPeopleWhoConsentAndOfReleasedResultsAlone) {
   run();
   EXPECT_EQ(calls_.size(), 1u);
   consent("tom", "none");
-  now_ += kMinute;
+  now_ += kStatementMinute_us;
   run();
   EXPECT_EQ(calls_.size(), 1u) << "the consent was withdrawn before the statement was taken";
   EXPECT_EQ(outbox()["deliveries"][0]["state"], "withdrawn");
@@ -150,13 +151,13 @@ TEST_F(Statements, AreKeptForThreeDaysWhileTheStoreAnswers500ThenGivenUpAloud) {
   assess("tom", std::int64_t{1});
   refusal_ = core::Error{core::Errc::unavailable, "the learning record store answered 500"};
   const std::int64_t begun = now_;
-  for (; now_ < begun + kDay; now_ += kMinute) run();
+  for (; now_ < begun + kStatementDay_us; now_ += kStatementMinute_us) run();
   // By hand, as for webhooks: after 0, 1, 4, 13, 40 min, then every 80 min: 40 + 80 k <= 1440.
   EXPECT_EQ(calls_.size(), 5u + 17u);
   for (const StatementCall& call : calls_)
     EXPECT_EQ(call.statement, calls_[0].statement) << "the store recognises it";
   EXPECT_EQ(outbox()["waiting"], 1);
-  for (; now_ < begun + 4 * kDay; now_ += 10 * kMinute) run();
+  for (; now_ < begun + 4 * kStatementDay_us; now_ += 10 * kStatementMinute_us) run();
   EXPECT_EQ(outbox()["given_up_within_week"], 1);
   const auto row = json(get("ann", "/audit?limit=1"))["rows"][0];
   EXPECT_EQ(row["what"], "giveUpDelivery");
