@@ -47,6 +47,7 @@ const std::map<std::string, std::vector<std::string>> kSecrets{
     {"nextTrial", {"ticket"}},
     {"trialResultAtStation", {"ticket"}},
     {"signOutAtStation", {"ticket"}},
+    {"setRecordStore", {"secret"}},
     {"makeStudy", {"seed"}},
     {"addAssignment", {"seed"}}};
 

@@ -6,6 +6,7 @@
 #include "core/json.hpp"
 #include "db/store/store.hpp"
 #include "db/store/volumes/objects.hpp"
+#include "server/api/learning/platform_keys.hpp"
 #include "server/api/operations/backups.hpp"
 #include "server/api/operations/telemetry.hpp"
 #include "server/api/people/secrets.hpp"
@@ -54,6 +55,7 @@ struct Backend {
   RefusalLimit refusals{};
   Telemetry telemetry{};
   TrialViews trial_views{};
+  PlatformKeys platform_keys{};
   Notifier* notifier = nullptr;  ///< null: nobody is told of events by e-mail or webhook
 };
 

@@ -45,6 +45,9 @@ core::Json schema_of(const Parameter& p) {
 }
 
 core::Json content(const std::string& name) {
+  if (name == kForm)
+    return {{"application/x-www-form-urlencoded",
+             {{"schema", {{"type", "object"}, {"additionalProperties", {{"type", "string"}}}}}}}};
   if (name == kBytes)
     return {{"application/octet-stream", {{"schema", {{"type", "string"}, {"format", "binary"}}}}}};
   return {{"application/json", {{"schema", schema::ref(name)}}}};

@@ -44,6 +44,20 @@ std::string words_of(const http::Response& response) {
   return json.is_object() ? core::one_line(json.value("error", ""), 300) : std::string();
 }
 
+namespace {
+
+std::string text_of(const core::Json& detail) {
+  return detail.dump(-1, ' ', false, core::Json::error_handler_t::replace);
+}
+
+void add_refusal(Backend& backend, const store::AuditedAction& act) {
+  const auto noted = backend.store.write(
+      [&](store::Writing& tx) { return store::add_act(tx, backend.store.audit_key(), act); });
+  if (!noted && backend.log) backend.log({{"what", "refusal not noted"}});
+}
+
+}  // namespace
+
 void note_refusal(Backend& backend, const Caller& caller, const std::string& peer,
                   const std::string& route, const std::string& object, const std::string& why,
                   int status) {
@@ -54,17 +68,22 @@ void note_refusal(Backend& backend, const Caller& caller, const std::string& pee
   if (status > 0) detail["status"] = status;
   if (caller.token) detail["api_token"] = caller.token->id;
   if (*unnoted > 0) detail["refusals_not_noted"] = *unnoted;
-  const store::AuditedAction act{
-      .who = caller.name,
-      .role = std::string(name(caller.role)),
-      .peer = peer,
-      .what = "refused: " + route,
-      .object = object,
-      .detail = detail.dump(-1, ' ', false, core::Json::error_handler_t::replace),
-      .at_utc_us = now};
-  const auto noted = backend.store.write(
-      [&](store::Writing& tx) { return store::add_act(tx, backend.store.audit_key(), act); });
-  if (!noted && backend.log) backend.log({{"what", "refusal not noted"}});
+  add_refusal(backend, {.who = caller.name,
+                        .role = std::string(name(caller.role)),
+                        .peer = peer,
+                        .what = "refused: " + route,
+                        .object = object,
+                        .detail = text_of(detail),
+                        .at_utc_us = now});
+}
+
+void note_stranger(Backend& backend, const std::string& peer, const std::string& route,
+                   const core::Json& detail) {
+  const std::int64_t now = backend.now_utc_us();
+  if (!backend.refusals.turn("stranger", now)) return;
+  add_refusal(
+      backend,
+      {.peer = peer, .what = "refused: " + route, .detail = text_of(detail), .at_utc_us = now});
 }
 
 }  // namespace tractus::api

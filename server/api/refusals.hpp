@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 
+#include "core/json.hpp"
 #include "server/http/message.hpp"
 
 namespace tractus::api {
@@ -50,5 +51,9 @@ std::string words_of(const http::Response& response);
 void note_refusal(Backend& backend, const Caller& caller, const std::string& peer,
                   const std::string& route, const std::string& object, const std::string& why,
                   int status = 0);
+/// The same for a person whom another system vouched for and whom no account knows, so that an
+/// administrator can link the person. All such refusals share one limit.
+void note_stranger(Backend& backend, const std::string& peer, const std::string& route,
+                   const core::Json& detail);
 
 }  // namespace tractus::api

@@ -162,6 +162,8 @@ class Relations : public PeopleTest {
          {{"/cohort", "/curricula/none/cohorts", {{"cohort", "$"}}, "c-tom", "c-tia"}}},
         {"repeatCurriculumStep",
          {{"account_id", "/curricula/none/people/$/again", {{"step", "a"}}, "tom", "tia"}}},
+        {"linkLtiPerson",
+         {{"/account", "/lti/platforms/none/people", {{"account", "$"}}, "tom", "tia"}}},
         {"referenceWay",
          {{"reference",
            "/trials/" + trial_of("tom") + "/references/$",
@@ -250,7 +252,7 @@ TEST_F(Relations, EveryCellOfRoutesTimesRolesTimesEndsIsAsThePolicySays) {
     }
   }
   std::printf("cells of relation routes x ends x roles x {own, stranger's}: %d\n", cells);
-  EXPECT_EQ(cells, 32 * 7 * 2);
+  EXPECT_EQ(cells, 33 * 7 * 2);
 }
 
 /// A route that is new and changes something names the other ends of what it brings together, or is
@@ -266,6 +268,10 @@ TEST_F(Relations, ARouteThatChangesSomethingNamesEveryEndOrIsOfOneObject) {
       "makeApiToken", "revokeApiToken",
       // what the caller is told of, and the server's webhooks, by administrators
       "setNotifications", "testNotification", "addWebhook", "removeWebhook", "testWebhook",
+      // learning platforms, by administrators; a launch is of the person whom it names
+      "addLtiPlatform", "removeLtiPlatform", "ltiLoginForm", "ltiLaunch",
+      // the learning record store, by administrators
+      "setRecordStore", "removeRecordStore",
       // an account, by administrators; a badge also by those who teach its bearer
       "eraseAccount", "addAccount", "setAccountState", "setAccountRole", "resetPassword",
       "setBadge", "linkSubject",

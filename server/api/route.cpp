@@ -85,6 +85,11 @@ http::Response as_report(http::Response response) {
   return response;
 }
 
+http::Response redirection(const std::string& address, int status) {
+  http::Response out{.status = status, .headers = {}, .body = std::string()};
+  return out.with("Location", address).with("Cache-Control", "no-store"), out;
+}
+
 http::Response json_response(const core::Json& json, int status) {
   http::Response response{.status = status,
                           .headers = {},

@@ -136,6 +136,8 @@ core::Result<http::Response> wants_websocket(const Call& call);
 
 /// The name for a body or answer that is not JSON.
 inline constexpr const char* kBytes = "bytes";
+/// The name for a body of a form: "a=1&b=2".
+inline constexpr const char* kForm = "form";
 
 /// The declaration of a route. A route without `who` is refused to every caller, and the tests of
 /// the catalogue fail.
@@ -146,6 +148,9 @@ struct RouteInfo {
   std::string summary;     ///< one line, which begins with what the route does
   std::vector<Grant> who;  ///< the only roles that may call the route
   bool open = false;       ///< needs no credentials, for example signing in
+  /// A page of another site may send a form to the route (only an open one), whose handler checks
+  /// that it comes from a known site: a launch by a learning platform.
+  bool takes_foreign_form = false;
   Object object = Object::none;
   std::string object_parameter = "id";  ///< the argument that names the object
   std::vector<End> ends = {};  ///< the other ends of a relation that the route makes or changes
@@ -180,6 +185,8 @@ RouteInfo taking(RouteInfo route, std::string body, std::uint64_t limit_bytes,
 
 /// Restricts a report page with a Content-Security-Policy: no scripts, no other resources.
 http::Response as_report(http::Response response);
+/// Sends the browser to an address; 303 after a POST.
+http::Response redirection(const std::string& address, int status = 302);
 http::Response json_response(const core::Json& json, int status = 200);
 /// The HTTP status of an error code; the only place that defines this mapping.
 int status_of(core::Errc code);

@@ -42,11 +42,12 @@ TEST_F(Routes, AllButSigningInRefuseWhoHasNoCredentials) {
     else
       EXPECT_EQ(status, 401) << route.method << " " << route.path;
   }
-  EXPECT_EQ(open,
-            (std::vector<std::string>{"GET /api/v1/session/oidc", "GET /api/v1/session/oidc/start",
-                                      "GET /api/v1/session/oidc/callback",
-                                      "GET /api/v1/session/oidc/end", "GET /api/v1/health",
-                                      "POST /api/v1/session", "POST /api/v1/stations/enrol"}));
+  EXPECT_EQ(open, (std::vector<std::string>{
+                      "GET /api/v1/lti/login", "POST /api/v1/lti/login", "POST /api/v1/lti/launch",
+                      "GET /api/v1/lti/keys", "GET /api/v1/session/oidc",
+                      "GET /api/v1/session/oidc/start", "GET /api/v1/session/oidc/callback",
+                      "GET /api/v1/session/oidc/end", "GET /api/v1/health", "POST /api/v1/session",
+                      "POST /api/v1/stations/enrol"}));
 }
 
 TEST_F(Routes, RefuseBeforeTheBodyIsRead) {
@@ -65,6 +66,16 @@ TEST_F(Routes, AChangeByCookieNeedsTheHeaderThatNoOtherSiteCanSend) {
   EXPECT_EQ(ask(request("DELETE", "/api/v1/session", {{"cookie", own}, {"x-tractus", "1"}})).status,
             204);
   EXPECT_EQ(ask(request("GET", "/api/v1/session", {{"cookie", own}})).status, 401);
+}
+
+TEST_F(Routes, OnlyALaunchTakesAFormOfAnotherSite) {
+  std::vector<std::string> taking;
+  for (const RouteInfo& route : routes())
+    if (route.takes_foreign_form) {
+      taking.push_back(route.id);
+      EXPECT_TRUE(route.open) << route.id;
+    }
+  EXPECT_EQ(taking, (std::vector<std::string>{"ltiLoginForm", "ltiLaunch"}));
 }
 
 TEST_F(Routes, AnUnknownAddressIsToldToNobodyWithoutCredentials) {

@@ -111,7 +111,8 @@ core::Result<void> check_query_is_declared(const RouteInfo& route, const http::R
 /// A page of another site can make a browser send its cookie, but not this header.
 core::Result<void> check_not_forged(const RouteInfo& route, const Caller& caller,
                                     const http::RequestHead& head) {
-  if (route.method == "GET" || !head.header("x-tractus").empty()) return {};
+  if (route.method == "GET" || route.takes_foreign_form || !head.header("x-tractus").empty())
+    return {};
   const bool signing_in = route.open && head.header("content-type").starts_with("application/json");
   if (signing_in || (!route.open && caller.session_hash.empty())) return {};
   return core::Error{core::Errc::forbidden, std::string(kKeepOut)};

@@ -1,7 +1,11 @@
 #include "server/api/web_fetch.hpp"
 
+#include <arpa/inet.h>
 #include <curl/curl.h>
+#include <sys/socket.h>
 
+#include <algorithm>
+#include <array>
 #include <memory>
 #include <mutex>
 
@@ -20,9 +24,48 @@ constexpr std::size_t kMost_bytes = 1u << 20;
 struct Cleans {
   void operator()(CURL* handle) const { curl_easy_cleanup(handle); }
 };
+struct FreesHeaders {
+  void operator()(curl_slist* list) const { curl_slist_free_all(list); }
+};
+using Headers = std::unique_ptr<curl_slist, FreesHeaders>;
 struct FreesText {
   void operator()(char* text) const { curl_free(text); }
 };
+
+/// Not of the public internet (RFC 6890): this machine, private networks, link-local addresses with
+/// the metadata services of clouds, multicast, and translations of IPv4 into IPv6.
+const http::Networks& private_networks() {
+  static const http::Networks kNetworks = [] {
+    auto parsed = http::Networks::parse(
+        {"0.0.0.0/8",       "10.0.0.0/8",     "100.64.0.0/10", "127.0.0.0/8",    "169.254.0.0/16",
+         "172.16.0.0/12",   "192.0.0.0/24",   "192.0.2.0/24",  "192.168.0.0/16", "198.18.0.0/15",
+         "198.51.100.0/24", "203.0.113.0/24", "224.0.0.0/3",   "::/128",         "::1",
+         "64:ff9b::/96",    "100::/64",       "2001::/32",     "2001:db8::/32",  "2002::/16",
+         "fc00::/7",        "fe80::/10",      "ff00::/8"});
+    core::require(bool(parsed), "the private networks are networks");
+    return *parsed;
+  }();
+  return kNetworks;
+}
+
+std::string text_of_address(const curl_sockaddr& address) {
+  std::array<char, INET6_ADDRSTRLEN> out{};
+  if (address.family == AF_INET)
+    ::inet_ntop(AF_INET, &reinterpret_cast<const sockaddr_in*>(&address.addr)->sin_addr, out.data(),
+                out.size());
+  else if (address.family == AF_INET6)
+    ::inet_ntop(AF_INET6, &reinterpret_cast<const sockaddr_in6*>(&address.addr)->sin6_addr,
+                out.data(), out.size());
+  return out.data();
+}
+
+curl_socket_t open_allowed(void* allowed, curlsocktype, curl_sockaddr* address) {
+  const auto& networks = *static_cast<const http::Networks*>(allowed);
+  const std::string text = text_of_address(*address);
+  if (text.empty() || (private_networks().contain(text) && !networks.contain(text)))
+    return CURL_SOCKET_BAD;
+  return ::socket(address->family, address->socktype | SOCK_CLOEXEC, address->protocol);
+}
 
 std::size_t take_bytes(char* bytes, std::size_t one, std::size_t count, void* into) {
   auto& out = *static_cast<std::string*>(into);
@@ -45,6 +88,13 @@ bool is_safe_address(const std::string& url) {
   return false;
 }
 
+bool is_callable(const std::string& url, const http::Networks& networks) {
+  const bool clean = std::ranges::all_of(url, [](char c) { return c > 32 && c < 127; });
+  const bool plain = url.starts_with("http://");
+  return clean && url.size() <= 2000 && is_safe_address(url) &&
+         (!plain || networks.contain(url.starts_with("http://[::1]") ? "::1" : "127.0.0.1"));
+}
+
 std::string percent_encoded(const std::string& text) {
   if (text.empty()) return {};  // to libcurl, no length is that of a C string
   const std::unique_ptr<char, FreesText> out(
@@ -53,19 +103,49 @@ std::string percent_encoded(const std::string& text) {
   return out.get();
 }
 
+std::string with_query(std::string url,
+                       const std::vector<std::pair<std::string, std::string>>& fields) {
+  for (const auto& [key, value] : fields)
+    url += (url.find('?') == std::string::npos ? "?" : "&") + key + "=" + percent_encoded(value);
+  return url;
+}
+
+namespace {
+
+/// The text of a POST; none: GET.
+std::optional<std::string> posted(const Fetch& what) {
+  if (!what.form) return what.body;
+  std::string out;
+  for (const auto& [key, value] : *what.form)
+    out += (out.empty() ? "" : "&") + key + "=" + percent_encoded(value);
+  return out;
+}
+
+Headers header_list(const std::vector<std::string>& lines) {
+  curl_slist* out = nullptr;
+  for (const std::string& line : lines) out = curl_slist_append(out, line.c_str());
+  return Headers(out);
+}
+
+void limit_networks(CURL* curl, const http::Networks& networks) {
+  curl_easy_setopt(curl, CURLOPT_PROXY, "");
+  curl_easy_setopt(curl, CURLOPT_OPENSOCKETFUNCTION, open_allowed);
+  curl_easy_setopt(curl, CURLOPT_OPENSOCKETDATA, const_cast<http::Networks*>(&networks));
+}
+
+}  // namespace
+
 Result<Fetched> fetch(const Fetch& what) {
   static std::once_flag once;
   std::call_once(once, [] { curl_global_init(CURL_GLOBAL_DEFAULT); });
   if (!is_safe_address(what.url))
-    return Error{Errc::bad_input,
-                 "the provider's address " + what.url.substr(0, 200) + ": https is expected"};
+    return Error{Errc::bad_input, "the address of " + what.who + " " + what.url.substr(0, 200) +
+                                      ": https is expected"};
   const std::unique_ptr<CURL, Cleans> handle(curl_easy_init());
   CURL* curl = handle.get();
   Fetched out;
-  std::string form;
-  if (what.form)
-    for (const auto& [key, value] : *what.form)
-      form += (form.empty() ? "" : "&") + key + "=" + percent_encoded(value);
+  const auto body = posted(what);
+  const Headers headers = header_list(what.headers);
   curl_easy_setopt(curl, CURLOPT_URL, what.url.c_str());
   curl_easy_setopt(curl, CURLOPT_PROTOCOLS_STR, "http,https");
   curl_easy_setopt(curl, CURLOPT_FOLLOWLOCATION, 0L);
@@ -73,17 +153,22 @@ Result<Fetched> fetch(const Fetch& what) {
   curl_easy_setopt(curl, CURLOPT_NOSIGNAL, 1L);
   curl_easy_setopt(curl, CURLOPT_WRITEFUNCTION, take_bytes);
   curl_easy_setopt(curl, CURLOPT_WRITEDATA, &out.body);
-  if (what.form) curl_easy_setopt(curl, CURLOPT_POSTFIELDS, form.c_str());
+  if (body) {
+    curl_easy_setopt(curl, CURLOPT_POSTFIELDSIZE, static_cast<long>(body->size()));
+    curl_easy_setopt(curl, CURLOPT_POSTFIELDS, body->c_str());
+  }
+  if (headers) curl_easy_setopt(curl, CURLOPT_HTTPHEADER, headers.get());
+  if (what.networks) limit_networks(curl, *what.networks);
   if (!what.user.empty()) {
     curl_easy_setopt(curl, CURLOPT_USERNAME, what.user.c_str());
     curl_easy_setopt(curl, CURLOPT_PASSWORD, what.password.c_str());
   }
   if (!what.authority.empty()) curl_easy_setopt(curl, CURLOPT_CAINFO, what.authority.c_str());
   const CURLcode got = curl_easy_perform(curl);
-  if (got == CURLE_WRITE_ERROR) return Error{Errc::too_large, "the provider's answer is too long"};
+  if (got == CURLE_WRITE_ERROR)
+    return Error{Errc::too_large, "the answer of " + what.who + " is too long"};
   if (got != CURLE_OK)
-    return Error{Errc::unavailable,
-                 std::string("the provider does not answer: ") + curl_easy_strerror(got)};
+    return Error{Errc::unavailable, what.who + " does not answer: " + curl_easy_strerror(got)};
   long status = 0;
   curl_easy_getinfo(curl, CURLINFO_RESPONSE_CODE, &status);
   out.status = static_cast<int>(status);

@@ -1,4 +1,4 @@
-/// Requests of the server to another server, for example to an OpenID Connect provider.
+/// Requests of the server to another server: an OpenID Connect provider, a learning platform, a webhook.
 #pragma once
 
 #include <chrono>
@@ -6,8 +6,10 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "core/result.hpp"
+#include "server/http/networks.hpp"
 
 namespace tractus::api {
 
@@ -18,10 +20,16 @@ struct Fetched {
 
 struct Fetch {
   std::string url;  ///< https; http is allowed only to loopback addresses
-  std::optional<std::map<std::string, std::string>> form = {};  ///< fields of a POST; none: GET
+  std::optional<std::map<std::string, std::string>> form = {};  ///< fields of a POST
+  std::optional<std::string> body = {};   ///< of a POST without `form`; neither: GET
+  std::vector<std::string> headers = {};  ///< "Name: value"
   std::string user = {}, password = {};  ///< credentials for HTTP basic authentication; empty: none
   std::filesystem::path authority = {};  ///< trusted PEM file; empty: the system's
   std::chrono::milliseconds patience{5000};  ///< time limit from the start to the last byte
+  /// If given: only public addresses and these are connected to, without a proxy. The address is
+  /// checked when it is connected to, so that a name cannot lead elsewhere later.
+  std::optional<http::Networks> networks = {};
+  std::string who = "the provider";  ///< the other server, for messages
 };
 
 /// Reads at most 1 MiB within `patience`, without redirects. Errors: bad_input (the address is not
@@ -31,7 +39,15 @@ core::Result<Fetched> fetch(const Fetch& what);
 /// Whether the address is https, or http to a loopback address.
 bool is_safe_address(const std::string& url);
 
+/// Whether `fetch` with these networks may be asked for the address: is_safe_address without spaces
+/// and control characters, of at most 2000 bytes; http only to a loopback address of `networks`.
+bool is_callable(const std::string& url, const http::Networks& networks);
+
 /// "a b" is "a%20b".
 std::string percent_encoded(const std::string& text);
+
+/// The address with these fields added to its query.
+std::string with_query(std::string url,
+                       const std::vector<std::pair<std::string, std::string>>& fields);
 
 }  // namespace tractus::api

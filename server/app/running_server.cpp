@@ -312,7 +312,9 @@ core::Result<void> serve(const ServeOptions& given) {
     if (oidc_settings->base.empty()) oidc_settings->base = address_of(options, server.port());
     backend.oidc = &oidc.emplace(std::move(*oidc_settings));
   }
-  told.base = told.mail ? told.mail->base : address_of(options, server.port());
+  told.base = told.mail      ? told.mail->base
+              : backend.oidc ? backend.oidc->settings().base
+                             : address_of(options, server.port());
   api::Notifier notifier(backend, std::move(told));
   backend.notifier = &notifier;
   notifier.start();

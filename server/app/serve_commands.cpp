@@ -61,10 +61,11 @@ Run serve_command(CLI::App& command) {
   command.add_option("--mail", *mail,
                      "Settings file of the mail server by which people are told of events");
   const auto webhook_networks = std::make_shared<std::vector<std::string>>();
-  command.add_option(
-      "--webhook-network", *webhook_networks,
-      "Private address or network (ADDRESS/BITS) whose webhooks the server calls; may be repeated "
-      "(default: only public addresses)");
+  command.add_option("--webhook-network", *webhook_networks,
+                     "Private address or network (ADDRESS/BITS) whose webhooks, learning platforms "
+                     "and record stores the server "
+                     "calls; may be repeated "
+                     "(default: only public addresses)");
   const auto pseudonyms = std::make_shared<std::filesystem::path>();
   command.add_option(
       "--pseudonym-key", *pseudonyms,

@@ -28,6 +28,11 @@ constexpr const char* kRows[] = {
     "insert into notification_addresses (account_id, address) values ('a', 'a@example.org')",
     "insert into webhooks (id, url, kinds, secret, made_utc_us, made_by) values ('w', "
     "'https://example.org/', 'due', 's', 1, 'ada')",
+    "insert into lti_platforms (id, issuer, client_id, deployments, authorization_url, token_url, "
+    "keys_url, match_email, made_utc_us, made_by) values ('f', 'https://lms.example.org', 'c', "
+    "'[\"1\"]', 'u', 'u', 'u', 0, 1, 'ada')",
+    "insert into record_stores (id, endpoint, key, secret, made_utc_us, made_by) values ('e', "
+    "'https://lrs.example.org', 'k', 's', 1, 'ada')",
     "insert into group_rules (version, definition, reason, made_utc_us, made_by) values (1, '{}', "
     "'r', 1, 'ada')",
     "insert into group_accounts (account_id, version, seen_utc_us, left_utc_us) values ('a', 1, 2, "

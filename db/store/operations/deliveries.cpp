@@ -46,19 +46,24 @@ struct NewDelivery {
   std::string batch = {};  ///< empty: a message of its own
 };
 
-core::Result<void> queue(Writing& tx, const NewDelivery& wanted, const std::string& event_id,
-                         std::int64_t now_utc_us) {
-  std::string id = core::new_id();
+/// Returns the id of the delivery, which is an earlier one if the batch has one.
+core::Result<std::string> add_delivery(Writing& tx, const NewDelivery& wanted,
+                                       std::int64_t now_utc_us) {
+  const std::string id = core::new_id();
   TRY(tx.query(
       "insert into deliveries (id, channel, recipient, batch, state, attempts, made_utc_us, "
       "due_utc_us, claimed_until_us, changed_utc_us, error) values (?, ?, ?, ?, 'waiting', 0, ?, "
       "?, 0, ?, '') on conflict (batch) do nothing",
       {id, name_value(wanted.channel), wanted.recipient, text_or_null(wanted.batch), now_utc_us,
        wanted.due_utc_us, now_utc_us}));
-  if (!wanted.batch.empty()) {
-    const auto rows = TRY(tx.query("select id from deliveries where batch = ?", {wanted.batch}));
-    id = rows.front().text(0);
-  }
+  if (wanted.batch.empty()) return id;
+  const auto rows = TRY(tx.query("select id from deliveries where batch = ?", {wanted.batch}));
+  return rows.front().text(0);
+}
+
+core::Result<void> queue(Writing& tx, const NewDelivery& wanted, const std::string& event_id,
+                         std::int64_t now_utc_us) {
+  const auto id = TRY(add_delivery(tx, wanted, now_utc_us));
   return done(tx.query("insert into delivery_events (delivery_id, event_id) values (?, ?)",
                        {id, event_id}));
 }
@@ -111,6 +116,19 @@ core::Result<void> queue_deliveries(Writing& tx, std::int64_t now_utc_us, bool m
     TRY(tx.query("update notification_events set spread = 1 where id = ?", {event.id}));
   }
   return {};
+}
+
+core::Result<std::string> queue_delivery(Writing& tx, Channel channel, const std::string& recipient,
+                                         std::int64_t now_utc_us) {
+  return add_delivery(tx, {channel, recipient, now_utc_us}, now_utc_us);
+}
+
+core::Result<void> withdraw_deliveries(Writing& tx, Channel channel, const std::string& recipient,
+                                       std::int64_t now_utc_us) {
+  return done(tx.query(
+      "update deliveries set state = 'withdrawn', changed_utc_us = ? where channel = ? and "
+      "recipient = ? and state = 'waiting'",
+      {now_utc_us, name_value(channel), recipient}));
 }
 
 core::Result<void> queue_webhook_test(Writing& tx, const std::string& webhook_id,

@@ -1,15 +1,22 @@
-/// The outbox: messages to people (e-mail) and to programs (webhooks), each with an id that stays
-/// the same when it is sent again, so that a receiver recognises it.
+/// The outbox: messages to people (e-mail), to programs (webhooks), scores to learning platforms (LTI)
+/// and statements to a learning record store (xAPI), each with an id that stays the same when it is sent again, so that a receiver recognises
+/// it.
 #pragma once
 
 #include "db/store/operations/notifications.hpp"
 
 namespace tractus::store {
 
-enum class Channel { mail, webhook };
+enum class Channel {
+  mail,
+  webhook,
+  lti,   ///< a score of an assignment to a learning platform
+  xapi,  ///< a statement of a trial to a learning record store
+};
 constexpr auto words(Channel) {
+  using enum Channel;
   return std::to_array<core::Word<Channel>>(
-      {{Channel::mail, "mail"}, {Channel::webhook, "webhook"}});
+      {{mail, "mail"}, {webhook, "webhook"}, {lti, "lti"}, {xapi, "xapi"}});
 }
 enum class DeliveryState {
   waiting,
@@ -26,7 +33,7 @@ constexpr auto words(DeliveryState) {
 struct Delivery {
   std::string id;
   Channel channel = Channel::mail;
-  std::string recipient;  ///< id of the account or the webhook
+  std::string recipient;  ///< id of the account, the webhook, the platform or the store
   DeliveryState state = DeliveryState::waiting;
   std::int64_t attempts = 0;
   std::int64_t made_utc_us = 0, due_utc_us = 0, changed_utc_us = 0;
@@ -43,6 +50,13 @@ std::int64_t next_daily_utc_us(std::int64_t now_utc_us);
 /// Queues the deliveries of new events, to whom they concern now. @param mail  false: the server
 /// sends no e-mail
 core::Result<void> queue_deliveries(Writing& tx, std::int64_t now_utc_us, bool mail);
+/// Queues a delivery of its own, which has no events: of what is known where its id is kept. Returns
+/// its id.
+core::Result<std::string> queue_delivery(Writing& tx, Channel channel, const std::string& recipient,
+                                         std::int64_t now_utc_us);
+/// What waits for this recipient is not sent any more.
+core::Result<void> withdraw_deliveries(Writing& tx, Channel channel, const std::string& recipient,
+                                       std::int64_t now_utc_us);
 /// Queues a test to a webhook. Errors: not_found.
 core::Result<void> queue_webhook_test(Writing& tx, const std::string& webhook_id,
                                       std::int64_t now_utc_us);
@@ -55,8 +69,8 @@ core::Result<std::optional<Delivery>> claim_delivery(Writing& tx, Channel channe
 core::Result<std::vector<NotificationEvent>> events_of(Reading& tx, const std::string& delivery_id);
 core::Result<void> end_delivery(Writing& tx, const Delivery& delivery, DeliveryState state,
                                 const std::string& error, std::int64_t now_utc_us);
-/// Tries it again later, and with it every delivery to the same receiver: the mail server, or the
-/// webhook.
+/// Tries it again later, and with it every delivery to the same receiver: the mail server, the
+/// webhook, the platform or the store.
 core::Result<void> postpone_delivery(Writing& tx, const Delivery& delivery,
                                      const std::string& error, std::int64_t now_utc_us);
 

@@ -7,6 +7,7 @@
 
 #include "core/bytes.hpp"
 #include "core/try.hpp"
+#include "db/store/operations/deliveries.hpp"
 #include "db/store/rows.hpp"
 
 namespace tractus {
@@ -199,10 +200,7 @@ core::Result<std::optional<Webhook>> webhook_of(Reading& tx, const std::string& 
 core::Result<void> remove_webhook(Writing& tx, const std::string& id, std::int64_t now_utc_us) {
   const auto rows = TRY(tx.query("delete from webhooks where id = ? returning id", {id}));
   if (rows.empty()) return core::Error{core::Errc::not_found, "no webhook " + id.substr(0, 32)};
-  return done(tx.query(
-      "update deliveries set state = 'withdrawn', changed_utc_us = ? where channel = 'webhook' and "
-      "recipient = ? and state = 'waiting'",
-      {now_utc_us, id}));
+  return withdraw_deliveries(tx, Channel::webhook, id, now_utc_us);
 }
 
 core::Result<std::vector<Recipient>> recipients_of(Reading& tx, const NotificationEvent& event) {

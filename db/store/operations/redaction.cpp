@@ -218,10 +218,11 @@ Result<void> redact_person(Store& store, const NamedPerson& person) {
 Result<std::uint64_t> redact_sign_ins(Store& store, std::int64_t before_utc_us) {
   for (std::uint64_t done = 0;;) {
     auto changed = TRY(store.write([&](Writing& tx) -> Result<std::uint64_t> {
-      auto rows = TRY(tx.query(std::string(kTrailRow) +
-                                   "where what in ('signIn', 'oidcCallback') and "
-                                   "peer <> '' and at_utc_us < ? order by number limit ?",
-                               {before_utc_us, kRowsPerWrite}));
+      auto rows = TRY(
+          tx.query(std::string(kTrailRow) +
+                       "where what in ('signIn', 'oidcSignIn', 'oidcCallback', 'ltiLaunch') and "
+                       "peer <> '' and at_utc_us < ? order by number limit ?",
+                   {before_utc_us, kRowsPerWrite}));
       for (const Row& raw : rows) {
         AuditRow row = trail_row(raw);
         row.act.peer.clear();

@@ -67,7 +67,11 @@ std::vector<ErasureStep> account_steps() {
        "delete from delivery_events where delivery_id in (select id from deliveries where "
        "recipient "
        "= :account)"},
-      {"deliveries", {}, "delete from deliveries where recipient = :account"},
+      {"deliveries",
+       {},
+       "delete from deliveries where recipient = :account or id in (select delivery_id from "
+       "lti_line_items where account_id = :account)"},
+      {"lti_line_items", {}, "delete from lti_line_items where account_id = :account"},
       {"cohort_invitations", {}, "delete from cohort_invitations where account_name = :name"},
       {"cohort_people", {}, "delete from cohort_people where account_id = :account"},
       {"retention_notices", {}, "delete from retention_notices where account_id = :account"}};
@@ -75,8 +79,13 @@ std::vector<ErasureStep> account_steps() {
 
 std::vector<ErasureStep> erased_trial_steps() {
   std::vector<ErasureStep> out;
-  for (const char* table : {"ratings", "rating_requests", "reference_trials", "trial_comments",
-                            "trial_clocks", "trial_metrics", "trial_entries", "study_trials"})
+  out.push_back({"deliveries", kErase,
+                 "delete from deliveries where id in (select delivery_id from record_statements "
+                 "where trial_id in " +
+                     kGone + ")"});
+  for (const char* table :
+       {"record_statements", "ratings", "rating_requests", "reference_trials", "trial_comments",
+        "trial_clocks", "trial_metrics", "trial_entries", "study_trials"})
     out.push_back(
         {table, kErase, std::string("delete from ") + table + " where trial_id in " + kGone});
   out.push_back(
@@ -158,6 +167,7 @@ std::vector<ErasureStep> name_steps() {
            {"analysis_plans", "made_by"},   {"analyses", "made_by"},
            {"models", "made_by"},           {"measurement_sets", "made_by"},
            {"lab_runs", "made_by"},         {"webhooks", "made_by"},
+           {"lti_platforms", "made_by"},    {"record_stores", "made_by"},
            {"group_rules", "made_by"}})
     out.push_back(renamed(table, column));
   out.push_back({"study_events",

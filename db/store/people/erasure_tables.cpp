@@ -108,6 +108,16 @@ const std::vector<TableDecision>& table_decisions() {
       {"operations", "notification_events", kept, kept, "events that were told", "opaque ids"},
       {"operations", "deliveries", removed, removed, "messages to the person", ""},
       {"operations", "delivery_events", removed, removed, "what the messages were about", ""},
+      {"learning", "lti_platforms", changed, changed, "learning platforms that the person stated",
+       kNameOfMaker},
+      {"learning", "lti_nonces", none, none, "", kNobody},
+      {"learning", "lti_line_items", removed, removed,
+       "places in the gradebooks of learning platforms", ""},
+      {"learning", "lti_keys", none, none, "", kNobody},
+      {"learning", "record_stores", changed, changed,
+       "learning record stores that the person stated", kNameOfMaker},
+      {"learning", "record_statements", removed, kept, "statements of trials to a record store",
+       kPseudonym},
       {"operations", "redactions", kept, kept, "digests of rows of the audit trail", kNobody},
       {"operations", "schema_versions", none, none, "", kNobody}};
   return kDecisions;

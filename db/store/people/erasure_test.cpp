@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <set>
 
 #include "core/json.hpp"
 #include "core/try.hpp"
@@ -220,11 +221,13 @@ TEST_P(Erasing, WhoComesBackInTheNoticePeriodStays) {
 TEST_P(Erasing, OldSignInsLoseTheirAddressAfterTheNoticePeriod) {
   add("other", "bea", Role::admin, 0);
   const std::int64_t now = 4000 * kDay_us;
-  act({.who = "bea",
-       .role = "admin",
-       .peer = "10.0.0.9",
-       .what = "signIn",
-       .at_utc_us = now - 400 * kDay_us});
+  const std::set<std::string> kinds{"signIn", "oidcSignIn", "ltiLaunch"};
+  for (const std::string& what : kinds)
+    act({.who = "bea",
+         .role = "admin",
+         .peer = "10.0.0.9",
+         .what = what,
+         .at_utc_us = now - 400 * kDay_us});
   act({.who = "bea",
        .role = "admin",
        .peer = "10.0.0.8",
@@ -239,13 +242,13 @@ TEST_P(Erasing, OldSignInsLoseTheirAddressAfterTheNoticePeriod) {
   const auto peers = [&] {
     std::vector<std::string> out;
     for (const AuditRow& row : trail())
-      if (row.act.what == "signIn") out.push_back(row.act.peer);
+      if (kinds.contains(row.act.what)) out.push_back(row.act.peer);
     return out;
   };
   ASSERT_TRUE(keep_retention(store_, now + 29 * kDay_us));
-  EXPECT_EQ(peers(), (std::vector<std::string>{"10.0.0.8", "10.0.0.9"}));
+  EXPECT_EQ(peers(), (std::vector<std::string>{"10.0.0.8", "10.0.0.9", "10.0.0.9", "10.0.0.9"}));
   ASSERT_TRUE(keep_retention(store_, now + 30 * kDay_us));
-  EXPECT_EQ(peers(), (std::vector<std::string>{"10.0.0.8", ""}));
+  EXPECT_EQ(peers(), (std::vector<std::string>{"10.0.0.8", "", "", ""}));
 }
 
 TEST_P(Erasing, RulesOutsideTheirRangesAreRefusedByName) {

@@ -189,7 +189,8 @@ Result<std::vector<InactivePerson>> inactive_people(Reading& tx, std::int64_t be
 Result<std::uint64_t> old_sign_ins(Reading& tx, std::int64_t before_utc_us) {
   std::uint64_t out = 0;
   for (const char* sql : {"select count(*) from known_origins where seen_utc_us < ?",
-                          "select count(*) from audit where what in ('signIn', 'oidcCallback') and "
+                          "select count(*) from audit where what in ('signIn', 'oidcSignIn', "
+                          "'oidcCallback', 'ltiLaunch') and "
                           "peer <> '' and at_utc_us < ?"}) {
     auto rows = TRY(tx.query(sql, {before_utc_us}));
     out += rows.front().count(0);

@@ -86,8 +86,24 @@ core::Result<void> Notifier::look_for_relapses(std::int64_t now_utc_us) {
   return {};
 }
 
+core::Result<void> Notifier::look_for_learning(std::int64_t now_utc_us) {
+  bool any = false;
+  TRY(backend_.store.read([&](store::Reading& tx) -> core::Result<void> {
+    const auto scores = TRY(store::changed_line_items(tx));
+    const auto trials = TRY(store::trials_to_state(tx));
+    any = !scores.empty() || !trials.empty();
+    return {};
+  }));
+  if (!any) return {};
+  return backend_.store.write([&](store::Writing& tx) -> core::Result<void> {
+    TRY(store::queue_scores(tx, now_utc_us));
+    return store::queue_statements(tx, now_utc_us);
+  });
+}
+
 core::Result<void> Notifier::collect() {
   const std::int64_t now = backend_.now_utc_us();
+  TRY(look_for_learning(now));
   if (const auto looked = look_for_relapses(now); !looked)
     log({{"what", "relapses were not looked for"}});
   const auto fresh =
@@ -115,7 +131,17 @@ core::Result<std::size_t> Notifier::deliver(Channel channel) {
 }
 
 core::Result<void> Notifier::attempt(const Delivery& delivery) {
-  return delivery.channel == Channel::mail ? attempt_mail(delivery) : attempt_call(delivery);
+  switch (delivery.channel) {
+    case Channel::mail:
+      return attempt_mail(delivery);
+    case Channel::webhook:
+      return attempt_call(delivery);
+    case Channel::lti:
+      return attempt_score(delivery);
+    case Channel::xapi:
+      return attempt_statement(delivery);
+  }
+  return withdrawn("the channel is unknown");
 }
 
 core::Result<void> Notifier::attempt_mail(const Delivery& delivery) {
@@ -157,6 +183,42 @@ core::Result<void> Notifier::attempt_call(const Delivery& delivery) {
   return settings_.call(call);
 }
 
+core::Result<void> Notifier::attempt_score(const Delivery& delivery) {
+  ScoreCall call{.at_utc_us = backend_.now_utc_us(), .networks = settings_.networks};
+  TRY(backend_.store.read([&](store::Reading& tx) -> core::Result<void> {
+    const auto what = TRY(store::line_item_of(tx, delivery.id));
+    const auto platform = TRY(store::platform_of(tx, delivery.recipient));
+    if (!what || !platform) return withdrawn("the results are held, or the link was removed");
+    call.what = *what;
+    call.platform = *platform;
+    return {};
+  }));
+  call.key = TRY(tool_key(backend_));
+  TRY(settings_.score(call));
+  return backend_.store.write(
+      [&](store::Writing& tx) { return store::settle_line_item(tx, call.what); });
+}
+
+core::Result<void> Notifier::attempt_statement(const Delivery& delivery) {
+  StatementCall call{.to = {}, .statement = {}, .networks = settings_.networks};
+  TRY(backend_.store.read([&](store::Reading& tx) -> core::Result<void> {
+    const auto to = TRY(store::record_store(tx));
+    const auto stated = TRY(store::stated_trial(tx, delivery.id));
+    if (!to || !stated) return withdrawn("the results are held, or the store was removed");
+    const auto trial = TRY(released_trial(tx, *stated, backend_.pseudonym_key));
+    if (!trial) return withdrawn("the person does not consent any more");
+    call.to = *to;
+    call.to.secret = TRY(backend_.secrets.opened(to->secret));
+    call.statement = statement_json({.id = delivery.id,
+                                     .base = settings_.base,
+                                     .title = TRY(store::series_title(tx, stated->study_id)),
+                                     .assignment_id = stated->study_id,
+                                     .trial = *trial});
+    return {};
+  }));
+  return settings_.state(call);
+}
+
 core::Result<void> Notifier::note_outcome(const Delivery& delivery,
                                           const core::Result<void>& outcome) {
   const std::int64_t now = backend_.now_utc_us();
@@ -185,6 +247,8 @@ core::Result<void> Notifier::give_up(const Delivery& delivery, const std::string
                           {"why", why}};
   return backend_.store.write([&](store::Writing& tx) -> core::Result<void> {
     TRY(store::end_delivery(tx, delivery, DeliveryState::given_up, why, now));
+    if (const auto score = TRY(store::line_item_of(tx, delivery.id)))
+      TRY(store::settle_line_item(tx, *score));
     return store::add_act(
         tx, backend_.store.audit_key(),
         {.who = store::kServer,

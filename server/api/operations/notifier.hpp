@@ -9,6 +9,8 @@
 
 #include "db/store/operations/deliveries.hpp"
 #include "server/api/backend.hpp"
+#include "server/api/learning/score_call.hpp"
+#include "server/api/learning/statement.hpp"
 #include "server/api/operations/mail.hpp"
 #include "server/api/operations/webhook_call.hpp"
 
@@ -16,10 +18,12 @@ namespace tractus::api {
 
 struct NotifierSettings {
   std::optional<MailSettings> mail = {};  ///< none: no e-mail is sent
-  http::Networks networks = {};           ///< private networks whose webhooks are called
+  http::Networks networks = {};           ///< private networks that are called
   std::string base = {};                  ///< "https://host:8480", for addresses of pages
   std::function<core::Result<void>(const MailSettings&, const Mail&)> send = send_mail;
   std::function<core::Result<void>(const WebhookCall&)> call = call_webhook;
+  std::function<core::Result<void>(const ScoreCall&)> score = post_score;
+  std::function<core::Result<void>(const StatementCall&)> state = post_statement;
 };
 
 class Notifier {
@@ -35,7 +39,7 @@ class Notifier {
   void wake();
   const NotifierSettings& settings() const { return settings_; }
 
-  /// Notes due assignments and queues the deliveries of new events.
+  /// Notes due assignments and queues the deliveries of new events, scores and statements.
   core::Result<void> collect();
   /// Sends what is due on a channel; returns the number of attempts.
   core::Result<std::size_t> deliver(store::Channel channel);
@@ -44,12 +48,15 @@ class Notifier {
   core::Result<void> attempt(const store::Delivery& delivery);
   core::Result<void> attempt_mail(const store::Delivery& delivery);
   core::Result<void> attempt_call(const store::Delivery& delivery);
+  core::Result<void> attempt_score(const store::Delivery& delivery);
+  core::Result<void> attempt_statement(const store::Delivery& delivery);
   core::Result<void> note_outcome(const store::Delivery& delivery,
                                   const core::Result<void>& outcome);
   core::Result<void> give_up(const store::Delivery& delivery, const std::string& why);
   void run(store::Channel channel);
   /// Looks for relapses when trials have come since, at most every kRelapsesEvery_us.
   core::Result<void> look_for_relapses(std::int64_t now_utc_us);
+  core::Result<void> look_for_learning(std::int64_t now_utc_us);
   void log(const core::Json& fields) const;
 
   Backend& backend_;

@@ -155,6 +155,13 @@ std::string new_token() { return core::hex(core::random_bytes(32)); }
 
 std::string token_hash(std::string_view token) { return core::sha256(core::bytes_of(token)); }
 
+std::string session_cookie(const Backend& backend, const std::string& token) {
+  const std::int64_t age_s = token.empty() ? 0 : kSessionAge_us / 1'000'000;
+  return std::string(kSessionCookie) + "=" + token +
+         "; Path=/; HttpOnly; SameSite=Strict; Max-Age=" + std::to_string(age_s) +
+         (backend.secure_cookies ? "; Secure" : "");
+}
+
 namespace {
 
 /// The account that these credentials open, its one-time code used up.

@@ -22,6 +22,8 @@ std::string new_token();
 /// The hash of a token that the database stores, so that a stolen database contains no valid
 /// tokens. An unsalted hash is sufficient because tokens are random.
 std::string token_hash(std::string_view token);
+/// The session's cookie, as Set-Cookie takes it. @param token  empty: removes the cookie
+std::string session_cookie(const Backend& backend, const std::string& token);
 
 struct Credentials {
   std::string name, password;

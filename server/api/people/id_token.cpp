@@ -184,7 +184,7 @@ std::string name_in(const Json& claims) {
   return name.size() <= kMaxClaim ? name : std::string();
 }
 
-Result<Identity> checked(const Json& claims, const Expected& expected) {
+Result<void> check_claims(const Json& claims, const Expected& expected) {
   if (core::text_member(claims, "iss") != expected.issuer)
     return refused("has another issuer (iss)");
   TRY(check_audience(claims, expected.client_id));
@@ -197,11 +197,9 @@ Result<Identity> checked(const Json& claims, const Expected& expected) {
     return refused("is not valid yet (nbf)");
   if (expected.nonce.empty() || core::text_member(claims, "nonce") != expected.nonce)
     return refused("is not the answer to this sign-in");
-  Identity out{core::text_member(claims, "sub"), core::text_member(claims, "sid"), name_in(claims),
-               groups_in(claims)};
-  if (out.subject.empty() || out.subject.size() > kMostSubject)
-    return refused("names no person (sub)");
-  return out;
+  const std::string subject = core::text_member(claims, "sub");
+  if (subject.empty() || subject.size() > kMostSubject) return refused("names no person (sub)");
+  return {};
 }
 
 Result<Json> part(std::string_view text) {
@@ -214,7 +212,7 @@ Result<Json> part(std::string_view text) {
 
 }  // namespace
 
-Result<Identity> identity_of(std::string_view token, const Json& keys, const Expected& expected) {
+Result<Json> claims_of(std::string_view token, const Json& keys, const Expected& expected) {
   if (token.size() > kMostToken_bytes) return refused("is too long");
   const auto first = token.find('.'), last = token.rfind('.');
   if (first == std::string_view::npos || first == last || token.find('.', first + 1) != last)
@@ -223,8 +221,31 @@ Result<Identity> identity_of(std::string_view token, const Json& keys, const Exp
   const auto signature = core::base64url_decoded(token.substr(last + 1));
   if (!signature) return refused("is not a valid JSON Web Token");
   TRY(check_signature(token.substr(0, last), *signature, header, keys));
-  const auto claims = TRY(part(token.substr(first + 1, last - first - 1)));
-  return checked(claims, expected);
+  auto claims = TRY(part(token.substr(first + 1, last - first - 1)));
+  TRY(check_claims(claims, expected));
+  return claims;
+}
+
+Result<Json> claims_by(const KeysOfAge& keys, std::string_view token, const Expected& expected) {
+  constexpr std::int64_t kKept_s = 3600, kAgain_s = 10;
+  auto known = TRY(keys(kKept_s));
+  auto claims = claims_of(token, known, expected);
+  if (claims || claims.error().code != Errc::not_found) return claims;
+  known = TRY(keys(kAgain_s));  // the other server may have a new key
+  claims = claims_of(token, known, expected);
+  if (!claims && claims.error().code == Errc::not_found)
+    return Error{Errc::unauthorised, claims.error().what};
+  return claims;
+}
+
+Identity identity_in(const Json& claims) {
+  return {core::text_member(claims, "sub"), core::text_member(claims, "sid"), name_in(claims),
+          groups_in(claims)};
+}
+
+Result<Identity> identity_of(std::string_view token, const Json& keys, const Expected& expected) {
+  const auto claims = TRY(claims_of(token, keys, expected));
+  return identity_in(claims);
 }
 
 }  // namespace api

@@ -22,6 +22,14 @@ std::int64_t steady_now_s() {
       .count();
 }
 
+core::Result<core::Json> fetched_json(const Fetch& what) {
+  const auto got = TRY(fetch(what));
+  auto out = core::parse_json(got.body, "the answer of " + what.who);
+  if (got.status == 200 && out && out->is_object()) return out;
+  return core::Error{core::Errc::unavailable,
+                     fmt::format("{} answered with the HTTP status {}", what.who, got.status)};
+}
+
 core::Result<void> Breaker::check() const {
   const std::lock_guard held(mutex_);
   const std::int64_t wait_s = closed_until_s_ - now_s_();

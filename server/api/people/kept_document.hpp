@@ -8,12 +8,17 @@
 #include <optional>
 
 #include "core/json.hpp"
+#include "server/api/web_fetch.hpp"
 
 namespace tractus::api {
 
 /// Seconds of a monotonic clock.
 using SteadyClock_s = std::function<std::int64_t()>;
 std::int64_t steady_now_s();
+
+/// The JSON object that a request is answered with. Errors: those of `fetch`; unavailable for another
+/// status than 200 and for an answer that is no JSON object.
+core::Result<core::Json> fetched_json(const Fetch& what);
 
 /// A circuit breaker: no request for 2 s after a failure, twice as long after each further failure,
 /// at most 60 s. Thread-safe.

@@ -14,7 +14,7 @@ using core::Error;
 using core::Json;
 using core::Result;
 
-constexpr std::int64_t kKept_s = 3600, kAgain_s = 10;
+constexpr std::int64_t kKept_s = 3600;
 
 std::string random_text() { return core::base64url(core::random_bytes(32)); }
 
@@ -24,12 +24,7 @@ std::string challenge_of(const std::string& verifier) {
 }
 
 Result<Json> json_at(const std::string& url, const OidcSettings& settings) {
-  auto got =
-      TRY(fetch({.url = url, .authority = settings.authority, .patience = settings.patience}));
-  auto out = core::parse_json(got.body, "the provider's answer");
-  if (got.status == 200 && out && out->is_object()) return out;
-  return Error{Errc::unavailable,
-               "the provider answered with the HTTP status " + std::to_string(got.status)};
+  return fetched_json({.url = url, .authority = settings.authority, .patience = settings.patience});
 }
 
 }  // namespace
@@ -113,21 +108,15 @@ Result<Json> Oidc::tokens(const std::string& code, const OidcAttempt& attempt) c
 
 Result<std::string> Oidc::sign_in_address(const OidcAttempt& attempt) const {
   const auto description = TRY(described());
-  const std::string endpoint = core::text_member(description, "authorization_endpoint");
-  std::string out = endpoint + (endpoint.find('?') == std::string::npos ? "?" : "&");
-  const std::pair<const char*, std::string> asked[] = {
-      {"response_type", "code"},
-      {"client_id", settings_.client_id},
-      {"redirect_uri", settings_.base + "/api/v1/session/oidc/callback"},
-      {"scope", "openid"},
-      {"state", attempt.state},
-      {"nonce", attempt.nonce},
-      {"code_challenge", challenge_of(attempt.verifier)},
-      {"code_challenge_method", "S256"}};
-  for (const auto& [key, value] : asked)
-    out += (out.back() == '?' || out.back() == '&' ? "" : "&") + std::string(key) + "=" +
-           percent_encoded(value);
-  return out;
+  return with_query(core::text_member(description, "authorization_endpoint"),
+                    {{"response_type", "code"},
+                     {"client_id", settings_.client_id},
+                     {"redirect_uri", settings_.base + "/api/v1/session/oidc/callback"},
+                     {"scope", "openid"},
+                     {"state", attempt.state},
+                     {"nonce", attempt.nonce},
+                     {"code_challenge", challenge_of(attempt.verifier)},
+                     {"code_challenge_method", "S256"}});
 }
 
 Result<Identity> Oidc::redeemed(const std::string& code, const OidcAttempt& attempt,
@@ -135,25 +124,17 @@ Result<Identity> Oidc::redeemed(const std::string& code, const OidcAttempt& atte
   const auto json = TRY(tokens(code, attempt));
   const std::string token = core::text_member(json, "id_token");
   const Expected expected{settings_.issuer, settings_.client_id, attempt.nonce, utc_s};
-  auto known = keys(kKept_s);
-  if (!known) return known.error();
-  auto identity = identity_of(token, *known, expected);
-  if (identity || identity.error().code != Errc::not_found) return identity;
-  known = keys(kAgain_s);  // the provider may have a new key
-  if (!known) return known.error();
-  identity = identity_of(token, *known, expected);
-  if (!identity && identity.error().code == Errc::not_found)
-    return Error{Errc::unauthorised, identity.error().what};
-  return identity;
+  const auto claims =
+      TRY(claims_by([this](std::int64_t age_s) { return keys(age_s); }, token, expected));
+  return identity_in(claims);
 }
 
 Result<std::string> Oidc::sign_out_address() const {
   const auto description = TRY(described());
   const std::string endpoint = core::text_member(description, "end_session_endpoint");
   if (!is_safe_address(endpoint)) return std::string();
-  return endpoint + (endpoint.find('?') == std::string::npos ? "?" : "&") +
-         "client_id=" + percent_encoded(settings_.client_id) +
-         "&post_logout_redirect_uri=" + percent_encoded(settings_.base + "/");
+  return with_query(endpoint, {{"client_id", settings_.client_id},
+                               {"post_logout_redirect_uri", settings_.base + "/"}});
 }
 
 }  // namespace api

@@ -22,11 +22,6 @@ using core::Result;
 constexpr const char* kAttemptCookie = "tractus_oidc";
 constexpr std::int64_t kAttempt_us = 10ll * 60 * 1'000'000;
 
-http::Response sent_to(const std::string& address) {
-  http::Response out{.status = 302, .headers = {}, .body = std::string()};
-  return out.with("Location", address).with("Cache-Control", "no-store"), out;
-}
-
 /// Cookie of one sign-in attempt. SameSite=Lax, because the browser returns from another site.
 std::string attempt_cookie(const Backend& backend, const std::string& value, std::int64_t seconds) {
   return std::string(kAttemptCookie) + "=" + value +
@@ -42,7 +37,7 @@ Result<const Oidc*> provider(const Call& call) {
 /// Redirects to the web pages, which show that the sign-in failed.
 http::Response failed(const Call& call, const Error& why) {
   if (call.backend.log) call.backend.log({{"what", "oidc"}, {"refused", why.what}});
-  return sent_to("/?sign_in=failed");
+  return redirection("/?sign_in=failed");
 }
 
 Result<http::Response> offered(const Call& call) {
@@ -60,7 +55,7 @@ Result<http::Response> begin(const Call& call) {
                   {"nonce", attempt.nonce},
                   {"verifier", attempt.verifier},
                   {"until_utc_us", call.backend.now_utc_us() + kAttempt_us}};
-  auto out = sent_to(*address);
+  auto out = redirection(*address);
   out.with("Set-Cookie", attempt_cookie(call.backend, call.backend.secrets.sealed(kept.dump()),
                                         kAttempt_us / 1'000'000));
   return out;
@@ -80,24 +75,6 @@ Result<OidcAttempt> attempt_of(const Call& call) {
   OidcAttempt out{json.value("state", ""), json.value("nonce", ""), json.value("verifier", "")};
   if (out.state.empty() || out.state != call.text("state")) return none;
   return out;
-}
-
-/// Writes an unknown subject into the audit trail, so that an administrator can link it; limited in
-/// rate like refusals.
-void note_unknown(const Call& call, const std::string& subject) {
-  if (!call.backend.refusals.turn("oidc", call.backend.now_utc_us())) return;
-  const store::AuditedAction act{
-      .who = "",
-      .role = "",
-      .peer = call.request.peer,
-      .what = "refused: oidcCallback",
-      .object = "",
-      .detail = Json{{"why", "no account has this subject"}, {"subject", subject}}.dump(
-          -1, ' ', false, Json::error_handler_t::replace),
-      .at_utc_us = call.backend.now_utc_us()};
-  const auto noted = call.backend.store.write(
-      [&](store::Writing& tx) { return store::add_act(tx, call.backend.store.audit_key(), act); });
-  if (!noted && call.backend.log) call.backend.log({{"what", "refusal not noted"}});
 }
 
 /// What the administrators' rule says of this person is done before anybody is let in.
@@ -128,7 +105,8 @@ Result<std::string> session_for(const Call& call, const Oidc& oidc, const Identi
     return store::account_of_subject(tx, oidc.settings().issuer, subject);
   }));
   if (!account || account->state != store::AccountState::active) {
-    note_unknown(call, subject);
+    note_stranger(call.backend, call.request.peer, "oidcCallback",
+                  {{"why", "no account has this subject"}, {"subject", subject}});
     return Error{Errc::unauthorised, "no account here is linked with this identity"};
   }
   const std::string token = new_token();
@@ -164,13 +142,9 @@ Result<http::Response> come_back(const Call& call) {
   if (!token && call.backend.log)
     call.backend.log({{"what", "oidc"}, {"refused", token.error().what}});
   const bool unknown = !token && token.error().what.starts_with("no account");
-  auto out = sent_to(token ? "/" : unknown ? "/?sign_in=unknown" : "/?sign_in=failed");
+  auto out = redirection(token ? "/" : unknown ? "/?sign_in=unknown" : "/?sign_in=failed");
   out.with("Set-Cookie", attempt_cookie(call.backend, "", 0));
-  if (token)
-    out.with("Set-Cookie", std::string(kSessionCookie) + "=" + *token +
-                               "; Path=/; HttpOnly; SameSite=Strict; Max-Age=" +
-                               std::to_string(kSessionAge_us / 1'000'000) +
-                               (call.backend.secure_cookies ? "; Secure" : ""));
+  if (token) out.with("Set-Cookie", session_cookie(call.backend, *token));
   return out;
 }
 
@@ -178,7 +152,7 @@ Result<http::Response> leave(const Call& call) {
   const auto oidc = TRY(provider(call));
   const auto address = oidc->sign_out_address();
   if (!address) return failed(call, address.error());
-  return sent_to(address->empty() ? "/" : *address);
+  return redirection(address->empty() ? "/" : *address);
 }
 
 Result<http::Response> link(const Call& call) {

@@ -25,12 +25,6 @@ core::Json identity_json(const std::string& id, const std::string& name, std::st
   return {{"name", name}, {"role", role}, {"id", id}, {"must_change", must_change}};
 }
 
-std::string cookie(const Backend& backend, const std::string& token, std::int64_t seconds) {
-  return std::string(kSessionCookie) + "=" + token +
-         "; Path=/; HttpOnly; SameSite=Strict; Max-Age=" + std::to_string(seconds) +
-         (backend.secure_cookies ? "; Secure" : "");
-}
-
 core::Result<http::Response> sign_in_route(const Call& call) {
   auto given = TRY(credentials(call.request));
   const store::Attempt attempt{store::Secret::account_password, given.name,
@@ -44,7 +38,7 @@ core::Result<http::Response> sign_in_route(const Call& call) {
   const store::Account& account = in->account;
   auto response = json_response(
       identity_json(account.id, account.name, name(account.role), account.must_change));
-  response.with("Set-Cookie", cookie(call.backend, in->token, kSessionAge_us / 1'000'000));
+  response.with("Set-Cookie", session_cookie(call.backend, in->token));
   return response;
 }
 
@@ -57,7 +51,7 @@ core::Result<http::Response> sign_out_route(const Call& call) {
   TRY(call.backend.store.write(
       [&](store::Writing& tx) { return store::remove_session(tx, call.caller.session_hash); }));
   http::Response response{.status = 204, .headers = {}, .body = std::string()};
-  return response.with("Set-Cookie", cookie(call.backend, "", 0)), response;
+  return response.with("Set-Cookie", session_cookie(call.backend, "")), response;
 }
 
 }  // namespace

@@ -36,3 +36,4 @@ export type * from './rating-schemas';
 export * from './volume-queries';
 export * from './token-queries';
 export * from './notification-queries';
+export * from './learning-queries';

@@ -34,7 +34,7 @@ export const outboxSchema = v.object({
   deliveries: v.array(
     v.object({
       id: v.string(),
-      channel: v.picklist(['mail', 'webhook']),
+      channel: v.picklist(['mail', 'webhook', 'lti', 'xapi']),
       recipient: v.string(),
       state: v.picklist(['waiting', 'sent', 'given up', 'withdrawn']),
       attempts: count,

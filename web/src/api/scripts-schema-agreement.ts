@@ -1,6 +1,7 @@
-/** As schema-agreement.ts, for API tokens and notifications: what the server describes is what is parsed. */
+/** As schema-agreement.ts, for API tokens, notifications and learning platforms: what the server describes is what is parsed. */
 import type * as v from 'valibot';
 import type { components } from './generated/schema';
+import type { ltiPlatformSchema, ltiPlatformsSchema, recordStoreSchema } from './learning-queries';
 import type { outboxSchema, ownNotificationsSchema, webhookMadeSchema } from './notification-queries';
 import type { apiTokenMadeSchema, apiTokensSchema } from './token-queries';
 
@@ -13,6 +14,9 @@ export interface ScriptsAgreed {
   readonly notifications: Takes<typeof ownNotificationsSchema, Served['OwnNotifications']>;
   readonly outbox: Takes<typeof outboxSchema, Served['Outbox']>;
   readonly webhookMade: Takes<typeof webhookMadeSchema, Served['WebhookMade']>;
+  readonly ltiPlatform: Takes<typeof ltiPlatformSchema, Served['LtiPlatform']>;
+  readonly ltiPlatforms: Takes<typeof ltiPlatformsSchema, Served['LtiPlatforms']>;
+  readonly recordStore: Takes<typeof recordStoreSchema, Served['RecordStore']>;
 }
 
 export const kScriptsAgreed: ScriptsAgreed = {
@@ -21,4 +25,7 @@ export const kScriptsAgreed: ScriptsAgreed = {
   notifications: true,
   outbox: true,
   webhookMade: true,
+  ltiPlatform: true,
+  ltiPlatforms: true,
+  recordStore: true,
 };

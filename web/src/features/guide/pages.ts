@@ -357,6 +357,13 @@ export const kPages: readonly GuidePage[] = [
         ),
         to: { href: '/network/audit', name: marked('Audit trail') },
       },
+      {
+        title: marked('Register a learning platform'),
+        text: marked(
+          'Enter the three addresses of this server at Moodle or Canvas (LTI 1.3), then the addresses of the platform here, and link its people. A link of a course opens an assignment when its custom parameter assignment is the id in the address of the assignment.',
+        ),
+        to: { href: '/network/mail', name: marked('Mail and webhooks') },
+      },
     ],
     terms: [[marked('Role'), marked('What an account may do. The server checks it on every request.')]],
   },

@@ -5,6 +5,8 @@ import { marked, say, Sentence } from '@/language';
 import { Badge, Card, DataTable, Facts, Notice, useTitle } from '@/ui';
 import { formatCount, formatDateTime } from '@/units';
 import styles from './notifications.module.css';
+import { PlatformsCard } from './platforms-card';
+import { RecordStoreCard } from './record-store-card';
 import { WebhooksCard } from './webhooks-card';
 
 const kTones = { waiting: 'neutral', sent: 'good', 'given up': 'bad', withdrawn: 'neutral' } as const;
@@ -13,6 +15,12 @@ const kStates: Readonly<Record<OutboxDelivery['state'], string>> = {
   sent: marked('sent'),
   'given up': marked('given up'),
   withdrawn: marked('withdrawn'),
+};
+const kChannels: Readonly<Record<OutboxDelivery['channel'], string>> = {
+  mail: marked('e-mail'),
+  webhook: marked('webhook'),
+  lti: marked('score to a learning platform'),
+  xapi: marked('statement to the record store'),
 };
 
 function MailServerCard({ mail }: Pick<Outbox, 'mail'>) {
@@ -68,7 +76,7 @@ function DeliveriesCard({ outbox }: { readonly outbox: Outbox }) {
             {
               name: marked('By'),
               by: (one) => one.channel,
-              cell: (one) => (one.channel === 'mail' ? say('e-mail') : say('webhook')),
+              cell: (one) => say(kChannels[one.channel]),
             },
             {
               name: marked('State'),
@@ -93,7 +101,7 @@ function DeliveriesCard({ outbox }: { readonly outbox: Outbox }) {
   );
 }
 
-/** Mail server, webhooks and deliveries, for administrators. */
+/** Mail server, webhooks, learning platforms, record store and deliveries, for administrators. */
 export function MailPage() {
   useTitle(say('Mail and webhooks'));
   const query = useQuery(outboxQuery);
@@ -128,6 +136,8 @@ export function MailPage() {
         <>
           <MailServerCard mail={outbox.mail} />
           <WebhooksCard webhooks={outbox.webhooks} />
+          <PlatformsCard />
+          <RecordStoreCard />
           <DeliveriesCard outbox={outbox} />
         </>
       ) : null}

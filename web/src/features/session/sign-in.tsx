@@ -22,7 +22,7 @@ function errorText(reason: Error): string {
   }
 }
 
-/** What the server's answer after the provider's says, in the address. */
+/** What the server's answer after the provider's, or after a learning platform's, says in the address. */
 function providerMessage(): string {
   switch (new URLSearchParams(window.location.search).get('sign_in')) {
     case 'unknown':
@@ -31,6 +31,24 @@ function providerMessage(): string {
       );
     case 'failed':
       return say('Sign-in through your institution failed. Try again.');
+    case 'launch_unknown':
+      return say(
+        'Your learning platform says who you are, but no account on this server is linked with you. Ask an administrator of this server: the audit trail has your launch.',
+      );
+    case 'launch_window':
+      return say(
+        'The browser kept the launch apart from this server. Open the link of your learning platform in a new window.',
+      );
+    case 'launch_here':
+      return say('This account is not opened from a learning platform. Sign in here.');
+    case 'launch_assignment':
+      return say(
+        'The link of your learning platform names an assignment that does not exist here. Tell the person who made the link.',
+      );
+    case 'launch_failed':
+      return say(
+        'The launch from your learning platform was refused. Follow the link there again; if that fails too, ask an administrator.',
+      );
     default:
       return '';
   }
