@@ -299,7 +299,7 @@ it.runIf(inject('fixture'))(
 
 it.runIf(inject('fixture'))('the kiosk speaks the language of who is signed in, then its own again', async () => {
   const { page } = await open('en-GB', 1440);
-  let send = (_state: object) => undefined as void;
+  let send: (state: object) => void = () => undefined;
   await page.routeWebSocket(/\/kiosk\/live/, (socket) => {
     send = (state) => socket.send(JSON.stringify(state));
     send(kStation);
