@@ -152,7 +152,7 @@ TEST_F(Access, WhoMustChooseAPasswordMayDoNothingElse) {
     const int status = ask(request(route.method, address(route, "tom"), headers)).status;
     if (status != 403) free.insert(route.id);
   }
-  EXPECT_EQ(free, (std::set<std::string>{"changePassword", "signOut", "whoAmI"}));
+  EXPECT_EQ(free, (std::set<std::string>{"changePassword", "setLanguage", "signOut", "whoAmI"}));
 }
 
 /// Blinding: what a trainee and a station can reach at all is this, by hand; a route that is new to
@@ -166,6 +166,7 @@ TEST_F(Access, ATraineeAndAStationReachTheseRoutesAlone) {
   EXPECT_EQ(reach[Role::trainee], (std::set<std::string>{"whoAmI",
                                                          "signOut",
                                                          "changePassword",
+                                                         "setLanguage",
                                                          "beginCodes",
                                                          "confirmCodes",
                                                          "endCodes",
@@ -240,7 +241,7 @@ TEST_F(Access, ATraineeAndAStationReachTheseRoutesAlone) {
                                    "ownNotifications", "setNotifications",
                                    "testNotification", "apiTokens",
                                    "makeApiToken",     "revokeApiToken of own",
-                                   "ownData"}));
+                                   "ownData",          "setLanguage"}));
 }
 
 TEST_F(Access, ARouteThatNamesNobodyIsRefusedToAll) {

@@ -260,8 +260,9 @@ TEST_F(Relations, EveryCellOfRoutesTimesRolesTimesEndsIsAsThePolicySays) {
 /// or of things that everybody who may call it may have all of.
 TEST_F(Relations, ARouteThatChangesSomethingNamesEveryEndOrIsOfOneObject) {
   const std::set<std::string> of_one_object{
-      // the caller's own session, password and codes
+      // the caller's own session, password, codes and language
       "signIn", "signOut", "changePassword", "beginCodes", "confirmCodes", "endCodes",
+      "setLanguage",
       // the caller's own saved views
       "saveView", "removeView",
       // the caller's own API tokens; an administrator revokes others'

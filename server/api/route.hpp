@@ -85,6 +85,7 @@ struct Caller {
       session_hash;  ///< hash of the browser's session token; empty for a station and an API token
   bool must_change = false;  ///< may only change the password
   std::optional<TokenUse> token = {};
+  std::string language = {};  ///< of the person's pages; empty: not chosen
 };
 
 /// The place, type and range of an argument. A text in a path is one segment, decoded.

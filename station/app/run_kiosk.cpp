@@ -265,7 +265,8 @@ void visit_of_participant(const Kiosk& kiosk, const std::string& participant) {
 void visit_of_trainee(const Kiosk& kiosk, const kiosk::Credentials& credentials) {
   auto ticket = uplink::sign_in(kiosk.server, credentials.badge, credentials.pin);
   if (!ticket) return tell_sign_in_error(kiosk.desk, ticket.error());
-  kiosk.desk.tell([&](Machine& machine, Instant_ns) { machine.signed_in(ticket->name); });
+  kiosk.desk.tell(
+      [&](Machine& machine, Instant_ns) { machine.signed_in(ticket->name, ticket->language); });
   do_trials(kiosk, assigned_work(kiosk.options, kiosk.folder, kiosk.server, *ticket), &*ticket);
 }
 

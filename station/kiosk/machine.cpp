@@ -79,6 +79,7 @@ core::Json Machine::to_json() const {
   if (work_ && work_->trial) out["work"] = json_of(*work_);
   if (!technician_pin_.empty()) out["technician"] = true;
   if (study_) out["study"] = true;
+  if (!language_.empty()) out["language"] = language_;
   if (screen_ == Screen::work) out["button"] = button_;
   if (screen_ == Screen::paused) out["in_trial"] = pauses_trial();
   if (screen_ == Screen::technician)
@@ -109,6 +110,7 @@ void Machine::show_fault(FaultKind kind, const std::string& what, core::Instant_
 void Machine::forget() {
   badge_.clear();
   name_.clear();
+  language_.clear();
   credentials_.reset();
   work_.reset();
   answer_.reset();
@@ -297,8 +299,9 @@ void Machine::interrupted(const std::string& what, core::Instant_ns now) {
   show_fault(FaultKind::interrupted, what, now);
 }
 
-void Machine::signed_in(const std::string& name) {
+void Machine::signed_in(const std::string& name, const std::string& language) {
   name_ = name;
+  language_ = language;
   badge_.clear();
   notice_.clear();
   screen_ = Screen::preparing;

@@ -177,7 +177,8 @@ class Machine {
 
   /// Events of the session, which the session's thread tells.
   void interrupted(const std::string& what, core::Instant_ns now);
-  void signed_in(const std::string& name);
+  /// @param language  that the person chose; empty: none
+  void signed_in(const std::string& name, const std::string& language = {});
   void sign_in_refused(const std::string& why, core::Instant_ns now);
   void sign_in_failed(FaultKind kind, const std::string& what, core::Instant_ns now);
   void offered(const wire::AssignedWork& work, core::Instant_ns now);
@@ -247,7 +248,7 @@ class Machine {
   std::optional<FaultKind> fault_;
   std::string what_;    ///< of a fault, for a technician
   std::string notice_;  ///< one line on the screen: why a PIN was refused
-  std::string badge_, name_;
+  std::string badge_, name_, language_;
   std::optional<Credentials> credentials_;
   std::optional<wire::AssignedWork> work_;
   Live live_;

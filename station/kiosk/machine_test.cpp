@@ -99,6 +99,16 @@ TEST_F(KioskMachine, AWrongPinAsksAgainAndALockedBadgeHasItsScreen) {
   EXPECT_EQ(screen(), Screen::badge);
 }
 
+TEST_F(KioskMachine, SpeaksThePersonsLanguageUntilThePersonLeaves) {
+  to_checking();
+  machine_.signed_in("Tom", "de");
+  machine_.offered(work_of(trial::Rig::palpation), now_);
+  EXPECT_EQ(machine_.to_json()["language"], "de");
+  expect_taken(command(Kind::sign_out));
+  machine_.signed_out(now_);
+  EXPECT_FALSE(machine_.to_json().contains("language"));
+}
+
 TEST_F(KioskMachine, ASecondStartIsRefused) {
   to_work();
   expect_taken(command(Kind::start));

@@ -22,7 +22,8 @@ core::Result<core::Json> asked(Server& server, const std::string& tail, const co
 core::Result<Ticket> sign_in(Server& server, const std::string& badge, const std::string& pin) {
   auto json = TRY(asked(server, "sign-in", {{"badge", badge}, {"pin", pin}}));
   core::Fields fields(json, "the server's ticket: ");
-  Ticket out{fields.text("ticket", 64), fields.text("name", 200)};
+  Ticket out{fields.text("ticket", 64), fields.text("name", 200),
+             fields.text_or("language", "", 16)};
   TRY(fields.done());
   return out;
 }

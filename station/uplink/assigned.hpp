@@ -8,8 +8,9 @@
 namespace tractus::uplink {
 
 struct Ticket {
-  std::string text;  ///< opens the trainee's assignments to this station alone
-  std::string name;  ///< to greet by
+  std::string text;           ///< opens the trainee's assignments to this station alone
+  std::string name;           ///< to greet by
+  std::string language = {};  ///< of the person's screens; empty: not chosen
 };
 /// Errors: unauthorised (badge or PIN), unavailable (locked out for a while, or no server).
 core::Result<Ticket> sign_in(Server& server, const std::string& badge, const std::string& pin);

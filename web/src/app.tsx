@@ -3,7 +3,7 @@ import { QueryClient, QueryClientProvider, useQuery } from '@tanstack/react-quer
 import { Suspense, type ReactNode } from 'react';
 import { Link, Redirect, Route, Switch, useLocation } from 'wouter';
 import { ApiError, endSession, onSessionEnd, sessionQuery } from '@/api';
-import { Account, SessionGate } from '@/features/session';
+import { Account, SessionGate, useAccountLanguage, useChooseLanguage } from '@/features/session';
 import { say, useLanguage } from '@/language';
 import { type Feature, Notice, Shell, Skeleton, useTitle } from '@/ui';
 import styles from './app.module.css';
@@ -116,8 +116,10 @@ function Pages() {
 }
 
 function Framed({ children }: { readonly children: ReactNode }) {
+  const chooseLanguage = useChooseLanguage();
+  useAccountLanguage();
   return (
-    <Shell home={<Brand />} account={<Account />}>
+    <Shell home={<Brand />} account={<Account />} onLanguage={chooseLanguage}>
       {children}
     </Shell>
   );

@@ -15,8 +15,8 @@ core::Result<void> run(Writing& tx, std::string_view sql, std::initializer_list<
 constexpr const char* kAccount =
     "a.id, a.name, a.role, a.password_hash, a.state, coalesce(a.pseudonym, ''), "
     "coalesce(a.badge, ''), coalesce(a.pin_hash, ''), coalesce(a.totp_secret, ''), "
-    "a.totp_confirmed, a.totp_step, a.must_change, a.made_utc_us, a.level";
-constexpr std::size_t kAccountColumns = 14;
+    "a.totp_confirmed, a.totp_step, a.must_change, a.made_utc_us, a.level, a.language";
+constexpr std::size_t kAccountColumns = 15;
 
 /// Columns of kAccount.
 core::Result<Account> account_from(const Row& row) {
@@ -35,7 +35,8 @@ core::Result<Account> account_from(const Row& row) {
                  .totp_step = row.integer(10),
                  .must_change = row.truth(11),
                  .made_utc_us = row.integer(12),
-                 .level = row.text(13)};
+                 .level = row.text(13),
+                 .language = row.text(14)};
 }
 
 /// Columns of kAccount and two times.
@@ -98,6 +99,11 @@ core::Result<void> use_totp_step(Writing& tx, const std::string& account_id, std
   if (rows.empty())
     return core::Error{core::Errc::unauthorised, "the one-time code was already used"};
   return {};
+}
+
+core::Result<void> set_language(Writing& tx, const std::string& account_id,
+                                const std::string& language) {
+  return run(tx, "update accounts set language = ? where id = ?", {language, account_id});
 }
 
 core::Result<std::optional<Account>> account_named(Reading& tx, const std::string& name) {

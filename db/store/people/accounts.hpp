@@ -33,6 +33,7 @@ struct Account {
   bool must_change = false;    ///< another person set the password: the owner must change it first
   std::int64_t made_utc_us = 0;  ///< filled on reading
   std::string level = {};        ///< of training, in the programme's words: "PGY-2"
+  std::string language = {};     ///< of pages and e-mails: "de"; empty: not chosen
 };
 
 struct Session {
@@ -55,12 +56,14 @@ struct StationEntry {
 
 /// Errors: conflict when the name, the badge or the pseudonym is taken.
 core::Result<void> add_account(Writing& tx, const Account& account, std::int64_t now_utc_us);
-/// Updates all fields except id, name, pseudonym and time. Errors: conflict if another account has
+/// Updates all fields except id, name, pseudonym, language and time. Errors: conflict if another account has
 /// the badge.
 core::Result<void> set_account(Writing& tx, const Account& account);
 /// Errors: unauthorised when this step, or a later one, was used already: two requests with the
 /// same one-time code cannot both succeed.
 core::Result<void> use_totp_step(Writing& tx, const std::string& account_id, std::int64_t step);
+core::Result<void> set_language(Writing& tx, const std::string& account_id,
+                                const std::string& language);
 core::Result<std::optional<Account>> account_named(Reading& tx, const std::string& name);
 core::Result<std::optional<Account>> account_of(Reading& tx, const std::string& id);
 core::Result<std::optional<Account>> account_with_badge(Reading& tx, const std::string& badge);

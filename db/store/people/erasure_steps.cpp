@@ -186,7 +186,7 @@ std::vector<ErasureStep> name_steps() {
        {},
        "update accounts set name = :alias, password_hash = '', state = 'disabled', "
        "pseudonym = null, badge = null, pin_hash = null, totp_secret = null, totp_confirmed "
-       "= 0, totp_step = 0, must_change = 0, level = '' where id = :account"});
+       "= 0, totp_step = 0, must_change = 0, level = '', language = '' where id = :account"});
   return out;
 }
 

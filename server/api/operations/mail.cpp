@@ -66,6 +66,23 @@ std::string date_of(std::int64_t utc_us) {
                      parts.tm_min, parts.tm_sec);
 }
 
+/// A subject as a header has it: ASCII as it is, other text as words in base64 of at most 75
+/// characters (RFC 2047), each of whole characters.
+std::string encoded_subject(std::string_view subject) {
+  constexpr std::size_t kWord_bytes = 45;
+  if (std::ranges::all_of(subject, [](char c) { return c >= 32 && c < 127; }))
+    return std::string(subject);
+  std::string out;
+  while (!subject.empty()) {
+    std::size_t size = std::min(kWord_bytes, subject.size());
+    while (size < subject.size() && (subject[size] & 0xC0) == 0x80) --size;
+    out += (out.empty() ? "=?utf-8?B?" : "\r\n =?utf-8?B?") +
+           core::base64(core::bytes_of(subject.substr(0, size))) + "?=";
+    subject.remove_prefix(size);
+  }
+  return out;
+}
+
 struct ReadsMessage {
   std::string_view left;
 };
@@ -145,7 +162,7 @@ std::string message_of(const MailSettings& settings, const Mail& mail) {
       "Date: {}\r\nFrom: Tractus <{}>\r\nTo: <{}>\r\nSubject: {}\r\nMessage-ID: <{}@{}>\r\n"
       "Auto-Submitted: auto-generated\r\nMIME-Version: 1.0\r\n"
       "Content-Type: text/plain; charset=utf-8\r\nContent-Transfer-Encoding: base64\r\n\r\n",
-      date_of(mail.at_utc_us), settings.from, mail.to, mail.subject, mail.id,
+      date_of(mail.at_utc_us), settings.from, mail.to, encoded_subject(mail.subject), mail.id,
       domain_of(settings.from));
   const std::string text = core::base64(core::bytes_of(mail.text));
   for (std::size_t at = 0; at < text.size(); at += kMailLine)
@@ -157,8 +174,8 @@ core::Result<void> send_mail(const MailSettings& settings, const Mail& mail) {
   if (!is_mail_address(mail.to))
     return core::Error{core::Errc::bad_input, "the e-mail address is none"};
   const bool one_line =
-      std::ranges::all_of(mail.subject, [](char c) { return c >= 32 && c < 127; });
-  core::require(one_line, "a subject is a line of ASCII");
+      std::ranges::none_of(mail.subject, [](char c) { return (c >= 0 && c < 32) || c == 127; });
+  core::require(one_line, "a subject is one line");
   const std::string message = message_of(settings, mail);
   ReadsMessage reading{message};
   const std::unique_ptr<CURL, CleansMail> handle(curl_easy_init());

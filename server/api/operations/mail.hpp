@@ -30,7 +30,7 @@ bool allows_recipient(const MailSettings& settings, const std::string& address);
 struct Mail {
   std::string id;  ///< of the delivery; it becomes the Message-ID
   std::string to;
-  std::string subject;  ///< ASCII, one line; never words that a person typed
+  std::string subject;  ///< UTF-8, one line; never words that a person typed
   std::string text;     ///< UTF-8
   std::int64_t at_utc_us = 0;
 };

@@ -5,6 +5,7 @@
 #include "core/clock.hpp"
 #include "core/try.hpp"
 #include "core/words.hpp"
+#include "server/api/operations/messages.hpp"
 
 namespace tractus {
 namespace api {
@@ -31,91 +32,79 @@ std::string page_of(const NotificationEvent& event) {
   return "/";
 }
 
-/// Title of the assignment on one line; a person typed it.
-core::Result<std::string> title_of(store::Reading& tx, const std::string& study_id) {
-  const auto rows = TRY(tx.query("select title from studies where id = ?", {study_id}));
-  return rows.empty() || rows.front().text(0).empty() ? std::string("without a title")
-                                                      : core::one_line(rows.front().text(0), 100);
-}
-
-core::Result<std::string> sentence_of(store::Reading& tx, const NotificationEvent& event) {
-  switch (event.kind) {
-    case NotificationKind::due: {
-      const auto title = TRY(title_of(tx, event.subject));
-      return fmt::format("An assignment is due within a day: {}.", title);
-    }
-    case NotificationKind::overdue: {
-      const auto title = TRY(title_of(tx, event.subject));
-      return fmt::format("An assignment is overdue: {}.", title);
-    }
-    case NotificationKind::released: {
-      const auto title = TRY(title_of(tx, event.subject));
-      return fmt::format("The results of an assignment are released: {}.", title);
-    }
+/// What is said of an event, in English. @note  {title} is the assignment's
+struct EventText {
+  std::string meaning, subject, sentence;
+};
+EventText text_of(NotificationKind kind) {
+  switch (kind) {
+    case NotificationKind::due:
+      return {"An assignment of yours is due within a day", "Tractus: an assignment is due",
+              "An assignment is due within a day: {title}."};
+    case NotificationKind::overdue:
+      return {"An assignment of yours, or of your cohorts, is overdue",
+              "Tractus: an assignment is overdue", "An assignment is overdue: {title}."};
+    case NotificationKind::released:
+      return {"Results of an assignment of yours are released", "Tractus: results are released",
+              "The results of an assignment are released: {title}."};
     case NotificationKind::relapse:
-      return std::string("The results of a trainee of your cohorts signal a relapse.");
+      return {"The results of a trainee of your cohorts signal a relapse",
+              "Tractus: a relapse is signalled",
+              "The results of a trainee of your cohorts signal a relapse."};
     case NotificationKind::self_test_failed:
-      return std::string("A station failed its self-test.");
+      return {"A station failed its self-test", "Tractus: a station failed its self-test",
+              "A station failed its self-test."};
     case NotificationKind::backup_failed:
-      return std::string("A backup failed.");
+      return {"A backup failed, or its verification", "Tractus: a backup failed",
+              "A backup failed."};
     case NotificationKind::test:
-      return std::string("This is a test. Messages from Tractus arrive here.");
+      return {"A test", "Tractus: test message",
+              "This is a test. Messages from Tractus arrive here."};
   }
-  return std::string();
+  return {};
+}
+constexpr const char* kMany = "Tractus: {count} messages";
+constexpr const char* kUntitled = "without a title";
+constexpr const char* kChosen = "You chose these messages: {address}";
+
+/// Title of the event's assignment on one line, which a person typed; empty if it is of none.
+core::Result<std::string> title_of(store::Reading& tx, const NotificationEvent& event) {
+  const auto rows = TRY(tx.query("select title from studies where id = ?", {event.subject}));
+  return rows.empty() ? std::string() : core::one_line(rows.front().text(0), 100);
 }
 
 }  // namespace
 
-std::string_view meaning(NotificationKind kind) {
-  switch (kind) {
-    case NotificationKind::due:
-      return "An assignment of yours is due within a day";
-    case NotificationKind::overdue:
-      return "An assignment of yours, or of your cohorts, is overdue";
-    case NotificationKind::released:
-      return "Results of an assignment of yours are released";
-    case NotificationKind::relapse:
-      return "The results of a trainee of your cohorts signal a relapse";
-    case NotificationKind::self_test_failed:
-      return "A station failed its self-test";
-    case NotificationKind::backup_failed:
-      return "A backup failed, or its verification";
-    case NotificationKind::test:
-      return "A test";
+std::string meaning(NotificationKind kind) { return text_of(kind).meaning; }
+
+std::vector<std::string> mail_sentences() {
+  std::vector<std::string> out{kMany, kUntitled, kChosen};
+  for (const NotificationKind kind : core::values<NotificationKind>()) {
+    const EventText text = text_of(kind);
+    out.insert(out.end(), {text.subject, text.sentence});
   }
-  return "";
+  return out;
 }
 
-std::string subject_of(const std::vector<NotificationEvent>& events) {
-  if (events.size() != 1) return fmt::format("Tractus: {} messages", events.size());
-  switch (events.front().kind) {
-    case NotificationKind::due:
-      return "Tractus: an assignment is due";
-    case NotificationKind::overdue:
-      return "Tractus: an assignment is overdue";
-    case NotificationKind::released:
-      return "Tractus: results are released";
-    case NotificationKind::relapse:
-      return "Tractus: a relapse is signalled";
-    case NotificationKind::self_test_failed:
-      return "Tractus: a station failed its self-test";
-    case NotificationKind::backup_failed:
-      return "Tractus: a backup failed";
-    case NotificationKind::test:
-      return "Tractus: test message";
-  }
-  return "Tractus";
+std::string subject_of(const std::vector<NotificationEvent>& events, std::string_view language) {
+  if (events.size() == 1) return translated(text_of(events.front().kind).subject, language);
+  return filled_in(translated(kMany, language), {{"count", std::to_string(events.size())}});
 }
 
 core::Result<std::string> message_text(store::Reading& tx,
                                        const std::vector<NotificationEvent>& events,
-                                       const std::string& base) {
+                                       const std::string& base, std::string_view language) {
   std::string out;
   for (const NotificationEvent& event : events) {
-    const auto sentence = TRY(sentence_of(tx, event));
-    out += fmt::format("{}\r\n{}{}\r\n\r\n", sentence, base, page_of(event));
+    auto title = TRY(title_of(tx, event));
+    if (title.empty()) title = translated(kUntitled, language);
+    const std::string sentence = translated(text_of(event.kind).sentence, language);
+    out += fmt::format("{}\r\n{}{}\r\n\r\n", filled_in(sentence, {{"title", title}}), base,
+                       page_of(event));
   }
-  return out + fmt::format("You chose these messages: {}/account/notifications\r\n", base);
+  return out +
+         filled_in(translated(kChosen, language), {{"address", base + "/account/notifications"}}) +
+         "\r\n";
 }
 
 core::Json webhook_json(const NotificationEvent& event, const std::string& base) {

@@ -295,6 +295,58 @@ TEST_F(Notifications, HaveNoWordsOfPeopleInTheirHeaders) {
   EXPECT_EQ(message.find("\r\n.\r\n"), std::string::npos);
 }
 
+TEST_F(Notifications, AreInTheLanguageOfTheAccount) {
+  for (const char* who : {"tom", "tia", "fay"}) choose(who, "overdue");
+  choose("ted", "backup_failed", "daily");
+  const auto speak = [&](const std::string& who, const std::string& language) {
+    ASSERT_TRUE(
+        store_.write([&](store::Writing& tx) { return store::set_language(tx, who, language); }));
+  };
+  EXPECT_EQ(post("tom", "/session/language", {{"language", "de"}}).status, 204);
+  speak("fay", "rm");  // of a newer server, say
+  speak("ted", "fr");
+  set_due(now_ - kHour_us);
+  run();
+  ASSERT_EQ(told(), (std::set<std::string>{"tom@example.org", "fay@example.org"}));
+  for (const Mail& mail : mails_) {
+    const bool german = mail.to == "tom@example.org";
+    EXPECT_EQ(mail.subject, german ? "Tractus: Eine Aufgabe ist überfällig"
+                                   : "Tractus: an assignment is overdue");
+    EXPECT_TRUE(mail.text.starts_with(german ? "Eine Aufgabe ist überfällig: ohne Titel.\r\n"
+                                             : "An assignment is overdue: without a title.\r\n"))
+        << mail.text;
+  }
+  mails_.clear();
+  for (const char* id : {"1", "2"})
+    note(NotificationKind::backup_failed, std::string("backup/") + id, id);
+  run();
+  now_ += kDay_us;
+  run();
+  ASSERT_EQ(mails_.size(), 1u);
+  EXPECT_EQ(mails_[0].subject, "Tractus\u202f: 2 messages");
+  EXPECT_NE(mails_[0].text.find("Une sauvegarde a échoué."), std::string::npos);
+  EXPECT_NE(mails_[0].text.find("Vous avez choisi ces messages"), std::string::npos);
+}
+
+TEST_F(Notifications, HaveASubjectThatIsASCIIOnTheWire) {
+  Mail mail{.id = "1", .to = "tom@example.org", .subject = "Überfällig", .text = "x"};
+  // Python: email.header.Header("Überfällig", "utf-8").encode()
+  EXPECT_NE(message_of(*settings().mail, mail).find("Subject: =?utf-8?B?w5xiZXJmw6RsbGln?=\r\n"),
+            std::string::npos);
+  for (int i = 0; i < 90; ++i) mail.subject += "ä";
+  const std::string head = message_of(*settings().mail, mail);
+  EXPECT_TRUE(std::ranges::all_of(head, [](char c) { return c >= 0; }));
+  const std::string begin = "=?utf-8?B?";
+  for (auto at = head.find(begin); at != std::string::npos; at = head.find(begin, at + 1)) {
+    const std::string word = head.substr(at, head.find("?=", at + begin.size()) + 2 - at);
+    EXPECT_LE(word.size(), 75u) << "RFC 2047, section 2";
+    const auto bytes =
+        core::base64_decoded(word.substr(begin.size(), word.size() - begin.size() - 2));
+    ASSERT_TRUE(bytes);
+    EXPECT_NE(std::to_integer<int>(bytes->front()) & 0xC0, 0x80) << "begins within a character";
+  }
+}
+
 TEST_F(Notifications, AreSignedAsStandardWebhooksStates) {
   // The example of the specification's reference libraries (standardwebhooks.com).
   EXPECT_EQ(webhook_signature("whsec_MfKQ9r8GKYqrTwjUPD8ILPZIo2LaLaSw",

@@ -156,8 +156,8 @@ core::Result<void> Notifier::attempt_mail(const Delivery& delivery) {
     if (!allows_recipient(*settings_.mail, mail.to))
       return withdrawn("the account has no address to which mail is allowed");
     const auto events = TRY(store::events_of(tx, delivery.id));
-    mail.subject = subject_of(events);
-    mail.text = TRY(message_text(tx, events, settings_.base));
+    mail.subject = subject_of(events, account->language);
+    mail.text = TRY(message_text(tx, events, settings_.base, account->language));
     return {};
   }));
   return settings_.send(*settings_.mail, mail);

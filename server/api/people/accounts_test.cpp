@@ -57,6 +57,20 @@ TEST_F(Accounts, AreMadeWithAPasswordThatMustBeChangedAtOnce) {
   EXPECT_EQ(sign_in_as("new", password).status, 401);
 }
 
+TEST_F(Accounts, ALanguageIsOfThePersonInEveryBrowser) {
+  EXPECT_TRUE(json(get("tom", "/session"))["language"].is_null());
+  EXPECT_EQ(post("tom", "/session/language", {{"language", "fr"}}).status, 204);
+  EXPECT_EQ(json(get("tom", "/session"))["language"], "fr");
+  const auto elsewhere =
+      ask(request("POST", "/api/v1/session", {{"content-type", "application/json"}},
+                  core::Json{{"name", "tom"}, {"password", kPassword}}.dump()));
+  EXPECT_EQ(json(elsewhere)["language"], "fr");
+  EXPECT_TRUE(json(get("tia", "/session"))["language"].is_null());
+  for (const char* none : {"", "it", "de-CH", "FR"})
+    EXPECT_EQ(post("tom", "/session/language", {{"language", none}}).status, 400) << none;
+  EXPECT_EQ(json(get("tom", "/session"))["language"], "fr");
+}
+
 TEST_F(Accounts, ANameOrABadgeIsOneAccountsAlone) {
   EXPECT_EQ(post("ann", "/accounts", {{"name", "tom"}, {"role", "trainee"}}).status, 409);
   EXPECT_EQ(post("ann", "/accounts/tom/badge", {{"badge", "77"}, {"pin", "1234"}}).status, 200);

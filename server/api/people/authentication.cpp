@@ -79,7 +79,8 @@ core::Result<Caller> by_api_token(Backend& backend, std::string_view text,
                 .name = account.name,
                 .session_hash = {},
                 .must_change = account.must_change,
-                .token = TokenUse{token.id, token.scopes}};
+                .token = TokenUse{token.id, token.scopes},
+                .language = account.language};
 }
 
 core::Result<Caller> by_token(Backend& backend, std::string_view token, const std::string& peer) {
@@ -105,7 +106,12 @@ core::Result<Caller> by_cookie(Backend& backend, std::string_view token, Presenc
   const store::Account& account = session->account;
   if (account.role == Role::station || account.state != store::AccountState::active)
     return core::Error{core::Errc::unauthorised, "the account is disabled"};
-  return Caller{account.role, account.id, account.name, hash, account.must_change};
+  return Caller{.role = account.role,
+                .id = account.id,
+                .name = account.name,
+                .session_hash = hash,
+                .must_change = account.must_change,
+                .language = account.language};
 }
 
 }  // namespace

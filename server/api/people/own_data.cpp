@@ -155,6 +155,7 @@ Json account_data(const store::Account& person, const std::vector<store::Cohort>
                   const std::vector<store::Invitation>& invitations,
                   const std::vector<store::SavedView>& views) {
   Json out = account_json(person);
+  out["language"] = core::or_null(person.language);
   for (const char* list : {"cohorts", "invitations", "saved_views"}) out[list] = Json::array();
   for (const auto& one : cohorts) out["cohorts"].push_back(one.name);
   for (const auto& one : invitations) out["invitations"].push_back(one.cohort_name);

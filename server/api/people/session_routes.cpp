@@ -20,9 +20,12 @@ core::Result<Credentials> credentials(const http::Request& request) {
   return out;
 }
 
-core::Json identity_json(const std::string& id, const std::string& name, std::string_view role,
-                         bool must_change) {
-  return {{"name", name}, {"role", role}, {"id", id}, {"must_change", must_change}};
+core::Json identity_json(const Caller& caller) {
+  return {{"name", caller.name},
+          {"role", name(caller.role)},
+          {"id", caller.id},
+          {"must_change", caller.must_change},
+          {"language", core::or_null(caller.language)}};
 }
 
 core::Result<http::Response> sign_in_route(const Call& call) {
@@ -36,15 +39,18 @@ core::Result<http::Response> sign_in_route(const Call& call) {
     return http::error_response(401, "code_needed", in.error().what);
   if (!in) return in.error();
   const store::Account& account = in->account;
-  auto response = json_response(
-      identity_json(account.id, account.name, name(account.role), account.must_change));
+  auto response = json_response(identity_json({.role = account.role,
+                                               .id = account.id,
+                                               .name = account.name,
+                                               .session_hash = {},
+                                               .must_change = account.must_change,
+                                               .language = account.language}));
   response.with("Set-Cookie", session_cookie(call.backend, in->token));
   return response;
 }
 
 core::Result<http::Response> who_am_i(const Call& call) {
-  return json_response(identity_json(call.caller.id, call.caller.name, name(call.caller.role),
-                                     call.caller.must_change));
+  return json_response(identity_json(call.caller));
 }
 
 core::Result<http::Response> sign_out_route(const Call& call) {
@@ -63,7 +69,9 @@ std::vector<RouteInfo> session_routes() {
        {"role", schema::one_of<Role>("Role, which decides what the caller may do")},
        {"id", schema::text("Id of the account or the station")},
        {"must_change",
-        schema::truth("True if the person must choose a new password before any other request")}});
+        schema::truth("True if the person must choose a new password before any other request")},
+       {"language", schema::nullable(schema::text("Language that the person chose, for example "
+                                                  "de; null if none was chosen"))}});
   const core::Json sent = schema::object(
       {{"name", schema::text("Name of the account")},
        {"password", schema::text("Password, at most 1024 bytes")},

@@ -80,7 +80,9 @@ Result<http::Response> sign_in_at_station(const Call& call) {
     TRY(note_success(tx, account.id, attempt, now));
     return store::add_session(tx, ticket_hash(call, ticket), account.id, now);
   }));
-  return json_response({{"ticket", ticket}, {"name", account.name}});
+  core::Json answer{{"ticket", ticket}, {"name", account.name}};
+  if (!account.language.empty()) answer["language"] = account.language;
+  return json_response(answer);
 }
 
 /// The account to which the ticket belongs. Errors: forbidden if the ticket is unknown or has
@@ -304,7 +306,8 @@ std::vector<RouteInfo> assigned_work_routes() {
                               {"pin", text("PIN that the trainee typed")}})},
       {"Ticket",
        object({{"ticket", text("Ticket for further requests, valid only at the calling station")},
-               {"name", text("Name of the account, for the greeting")}})}};
+               {"name", text("Name of the account, for the greeting")},
+               {"language", optional(text("Language that the person chose, for example de"))}})}};
   RouteInfo next =
       assigned_work_route("next", "nextTrial",
                           "Read the next assigned trial of the trainee; the answer stays the same "

@@ -44,6 +44,15 @@ TEST_F(AssignedWork, GoesOnAtAnotherStationOnceTheUnstartedTrialWasGivenBack) {
   EXPECT_EQ(next_slot("token-2", third), slot);
 }
 
+TEST_F(AssignedWork, TellsTheStationTheLanguageThatThePersonChose) {
+  const auto signed_in = [&] {
+    return json(work("token-1", "sign-in", {{"badge", "4711"}, {"pin", "2468"}}));
+  };
+  EXPECT_FALSE(signed_in().contains("language"));
+  EXPECT_EQ(post("tom", "/session/language", {{"language", "de"}}).status, 204);
+  EXPECT_EQ(signed_in()["language"], "de");
+}
+
 TEST_F(AssignedWork, OfAnotherPersonOrOfNobodyIsNotReleased) {
   const std::string toms = ticket("token-1"), slot = next_slot("token-1", toms);
   ASSERT_EQ(post("flo", "/accounts/tia/badge", {{"badge", "4712"}, {"pin", "1357"}}).status, 200);

@@ -14,6 +14,8 @@ export const sessionSchema = v.object({
   role: v.string(),
   id: v.optional(v.string(), ''),
   must_change: v.optional(v.boolean(), false),
+  /** That the person chose; null: none. */
+  language: v.optional(v.nullable(v.string()), null),
 });
 
 export const trialStateSchema = v.picklist(['assessing', 'assessed', 'failed']);

@@ -1,5 +1,6 @@
 /** The station's full-screen page: it shows the station's state and sends what a person touches; it decides nothing. */
-import { say, useLanguage } from '@/language';
+import { useEffect } from 'react';
+import { preferredLanguage, readLanguage, say, speak, useLanguage } from '@/language';
 import { Badge } from '@/ui';
 import { AnswerScreen } from './answer-screen';
 import { FaultScreen, LostScreen } from './fault-screens';
@@ -47,6 +48,10 @@ function Screen({ state, send }: { readonly state: State; readonly send: Send })
 export function Kiosk() {
   const { state, connection, send, connect } = useStation();
   const spoken = useLanguage();
+  const theirs = readLanguage(state?.language);
+  useEffect(() => {
+    speak(theirs ?? preferredLanguage()).catch(() => undefined);
+  }, [theirs]);
   const known = connection === 'open' ? state : null;
   return (
     <div key={spoken} className={styles.page} data-screen={known ? known.screen : connection}>

@@ -95,6 +95,8 @@ const State = v.object({
   in_trial: v.optional(v.boolean(), false),
   technician: v.optional(v.boolean(), false),
   study: v.optional(v.boolean(), false),
+  /** That the person at the station chose on the account. */
+  language: v.optional(v.string()),
   findings: v.optional(v.array(Finding), []),
   trials: v.optional(v.array(v.string()), []),
   log: v.optional(v.array(v.string()), []),

@@ -9,8 +9,13 @@ const remember = (one: Language | undefined) => {
   pressed = one;
 };
 
+interface Props {
+  /** Without: the choice is of this browser. */
+  readonly onChoose?: (chosen: Language) => void;
+}
+
 /** Each language by its own name, so that whoever reads only one finds it. */
-export function LanguageSwitch() {
+export function LanguageSwitch({ onChoose = (one) => void chooseLanguage(one) }: Props) {
   const spoken = useLanguage();
   const group = useRef<HTMLDivElement>(null);
   useEffect(() => {
@@ -20,7 +25,7 @@ export function LanguageSwitch() {
   }, [spoken]);
   const choose = (one: Language) => {
     remember(one);
-    void chooseLanguage(one);
+    onChoose(one);
   };
   return (
     <div ref={group} className={styles.languages} role="group" aria-label={say('Language')}>

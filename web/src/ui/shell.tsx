@@ -1,5 +1,5 @@
 import type { MouseEvent, ReactNode } from 'react';
-import { marked, say } from '@/language';
+import { marked, say, type Language } from '@/language';
 import { timeZone } from '@/units';
 import { Button } from './button';
 import { LanguageSwitch } from './language-switch';
@@ -10,6 +10,7 @@ interface Props {
   /** Right of the name: who is signed in, sign out. */
   readonly account?: ReactNode;
   readonly home: ReactNode;
+  readonly onLanguage: (chosen: Language) => void;
   readonly children: ReactNode;
 }
 
@@ -23,7 +24,7 @@ function toContent(event: MouseEvent): void {
 }
 
 /** What stands round every page. */
-export function Shell({ account, home, children }: Props) {
+export function Shell({ account, home, onLanguage, children }: Props) {
   const theme = useTheme();
   return (
     <>
@@ -52,7 +53,7 @@ export function Shell({ account, home, children }: Props) {
       </main>
       <footer className={styles.footer}>
         <span>{say('Times are in {zone}.', { zone: timeZone() })}</span>
-        <LanguageSwitch />
+        <LanguageSwitch onChoose={onLanguage} />
       </footer>
     </>
   );

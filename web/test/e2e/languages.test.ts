@@ -1,7 +1,7 @@
 /** Pages in German and French, as a browser set to them gets them: said in the language, without faults, not wider than the screen. */
 import type { Browser, Page } from 'playwright-core';
 import { afterAll, beforeAll, describe, expect, inject, it } from 'vitest';
-import { kShots, launch } from './browser';
+import { asked, kShots, launch, someStudy } from './browser';
 
 let browser: Browser;
 beforeAll(async () => {
@@ -89,12 +89,19 @@ const wider = (page: Page) =>
   page.evaluate(() => document.documentElement.scrollWidth - document.documentElement.clientWidth);
 
 const kWords = {
-  'de-CH': { lang: 'de', sign_in: 'Anmelden', badge: 'Scannen Sie Ihren Badge', breach: 'Wo ist eine Perforation?' },
+  'de-CH': {
+    lang: 'de',
+    sign_in: 'Anmelden',
+    badge: 'Scannen Sie Ihren Badge',
+    breach: 'Wo ist eine Perforation?',
+    compare: 'Vergleichen',
+  },
   'fr-CH': {
     lang: 'fr',
     sign_in: 'Se connecter',
     badge: 'Scannez votre badge',
     breach: 'Où se trouve une effraction ?',
+    compare: 'Comparer',
   },
 } as const;
 
@@ -130,14 +137,29 @@ const kOthers = [
   '/account/tokens',
   '/network/tokens',
   '/network/mail',
-  '/guide',
-  '/guide/faculty',
-  '/guide/technician',
-  '/guide/first-week',
-  '/guide/scripts',
   '/studies',
   '/studies/new',
 ] as const;
+const kGuide = [
+  '/guide',
+  '/guide/trainee',
+  '/guide/faculty',
+  '/guide/director',
+  '/guide/researcher',
+  '/guide/technician',
+  '/guide/admin',
+  '/guide/first-week',
+  '/guide/scripts',
+] as const;
+const kNetwork = [
+  '/network/people',
+  '/network/cohorts',
+  '/network/stations',
+  '/network/backups',
+  '/network/retention',
+  '/network/audit',
+] as const;
+const kAnalysis = ['/analysis', '/analysis/example', '/analysis/plans/new', '/lab', '/lab/versions'] as const;
 
 describe.runIf(inject('fixture')).each(places)('in %s at %i px', (locale, width) => {
   const words = kWords[locale];
@@ -178,12 +200,36 @@ describe.runIf(inject('fixture')).each(places)('in %s at %i px', (locale, width)
 
   it.each([
     ['trials and ratings', kTrials],
-    ['classes, accounts, studies and the guide', kOthers],
+    ['classes, accounts and studies', kOthers],
+    ['the guide', kGuide],
+    ['accounts, cohorts, stations and backups', kNetwork],
+    ['analyses and the lab', kAnalysis],
   ])('the pages of %s are said in the language and fit', async (_name, addresses) => {
     const { page, faults } = await open(locale, width);
     await page.goto('/');
     await signIn(page);
     expect(await tooWide(page, addresses)).toEqual([]);
+    expect(faults).toEqual([]);
+    await page.context().close();
+  });
+
+  it('the pages of one study, one station, a person who leaves and the lab’s steps are said in the language and fit', async () => {
+    const { page, faults } = await open(locale, width);
+    await page.goto('/lab');
+    await signIn(page);
+    const study = await someStudy(page);
+    const { stations } = await asked<{ stations: { id: string }[] }>(page, '/stations');
+    const { accounts } = await asked<{ accounts: { id: string }[] }>(page, '/accounts');
+    await page.getByRole('button', { name: words.compare, exact: true }).click();
+    await page.waitForURL(/\/lab\/work\//);
+    const work = new URL(page.url()).pathname.split('/').slice(0, 5).join('/');
+    const steps = ['compare', 'where', 'missing', 'add', 'publish'].map((step) => `${work}/${step}`);
+    const own = [
+      `/studies/${study?.id ?? ''}`,
+      `/network/stations/${stations[0]?.id ?? ''}`,
+      `/network/people/${accounts[0]?.id ?? ''}/leaving`,
+    ];
+    expect(await tooWide(page, [...own, ...steps])).toEqual([]);
     expect(faults).toEqual([]);
     await page.context().close();
   });
@@ -223,6 +269,47 @@ it.runIf(inject('fixture'))('the language switch changes the page, keeps the foc
   await page.getByRole('button', { name: 'English' }).click();
   await page.getByRole('heading', { name: 'Sign in' }).waitFor();
   expect(await page.locator('html').getAttribute('lang')).toBe('en');
+  await page.context().close();
+});
+
+it.runIf(inject('fixture'))(
+  'the language of the account is spoken whatever the browser’s is, until sign-out',
+  async () => {
+    const { page } = await open('en-GB', 1440);
+    const { name, password } = inject('account');
+    await page.goto('/account');
+    await page.getByLabel('Name').fill(name);
+    await page.getByLabel('Password').fill(password);
+    await page.getByRole('button', { name: 'Sign in' }).click();
+    await page.getByRole('combobox', { name: 'Language' }).selectOption('Deutsch');
+    await page.getByRole('heading', { name: 'Mein Konto' }).waitFor();
+    await page.evaluate(() => localStorage.clear());
+    await page.reload();
+    await page.getByRole('heading', { name: 'Mein Konto' }).waitFor();
+    await page.getByRole('button', { name: 'Français' }).click();
+    await page.getByRole('heading', { name: 'Mon compte' }).waitFor();
+    await page.evaluate(() => localStorage.clear());
+    await page.reload();
+    await page.getByRole('heading', { name: 'Mon compte' }).waitFor();
+    await page.getByRole('button', { name: 'Se déconnecter' }).click();
+    await page.getByRole('heading', { name: 'Sign in' }).waitFor();
+    await page.context().close();
+  },
+);
+
+it.runIf(inject('fixture'))('the kiosk speaks the language of who is signed in, then its own again', async () => {
+  const { page } = await open('en-GB', 1440);
+  let send: (state: object) => void = () => undefined;
+  await page.routeWebSocket(/\/kiosk\/live/, (socket) => {
+    send = (state) => socket.send(JSON.stringify(state));
+    send(kStation);
+  });
+  await page.goto('/kiosk.html');
+  await page.getByRole('heading', { name: 'Scan your badge' }).waitFor();
+  send({ ...kScreens.work, language: 'de' });
+  await page.getByRole('button', { name: 'Abmelden' }).waitFor();
+  send(kStation);
+  await page.getByRole('heading', { name: 'Scan your badge' }).waitFor();
   await page.context().close();
 });
 

@@ -39,7 +39,7 @@ describe.each(kTranslations)('the catalogue %s', (language) => {
 
 it('what is translated of the server’s and the station’s words stands in their sources, in every language', () => {
   const root = fileURLToPath(new URL('../../../', import.meta.url));
-  const sources = ['shared/metrics', 'server', 'station', 'db']
+  const sources = ['shared/metrics', 'shared/effects', 'server', 'station', 'db']
     .flatMap((folder) =>
       readdirSync(join(root, folder), { recursive: true, encoding: 'utf8' })
         .filter((name) => name.endsWith('.cpp') && !name.endsWith('_test.cpp'))

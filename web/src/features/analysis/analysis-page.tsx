@@ -11,6 +11,7 @@ import {
   studiesQuery,
   type PlanSummary,
 } from '@/api';
+import { marked, say, Sentence } from '@/language';
 import { Badge, Card, DataTable, Facts, Notice, Select, Skeleton, useTitle } from '@/ui';
 import { formatCount, formatDateTime } from '@/units';
 import styles from './analysis.module.css';
@@ -20,7 +21,7 @@ import { QuestionForm } from './question-form';
 
 /** The trial data, a quick analysis of them, and the locked plans. */
 export function AnalysisPage() {
-  useTitle('Analysis');
+  useTitle(say('Analysis'));
   const [, go] = useLocation();
   const [study, setStudy] = useState('');
   const role = useQuery({ ...sessionQuery, enabled: false }).data?.role;
@@ -45,43 +46,44 @@ export function AnalysisPage() {
     <div className={styles.page}>
       <div className={styles.head}>
         <div>
-          <h1>Analysis</h1>
+          <h1>{say('Analysis')}</h1>
           <p className={styles.lead}>
-            Analyse trial data: run a plan that was locked before the data were seen, or run a single method now. Every
-            result can be recomputed.
+            {say(
+              'Analyse trial data: run a plan that was locked before the data were seen, or run a single method now. Every result can be recomputed.',
+            )}
           </p>
         </div>
         <span className={styles.buttons}>
-          <Link href="/analysis/example">Published tables, recomputed</Link>
+          <Link href="/analysis/example">{say('Published tables, recomputed')}</Link>
           <Link
             href={`/analysis/plans/new${study === '' ? '' : `?study=${encodeURIComponent(study)}`}`}
             className={styles.solidLink}
           >
-            New plan
+            {say('New plan')}
           </Link>
         </span>
       </div>
       <Card
-        title="Trial data"
+        title={say('Trial data')}
         aside={
           <span className={styles.buttons}>
             <Select
-              label={<span className="hidden-visually">Study</span>}
+              label={<span className="hidden-visually">{say('Study')}</span>}
               value={study}
               onChange={(event) => setStudy(event.target.value)}
               options={[
-                { value: '', text: 'All scored trials' },
+                { value: '', text: say('All scored trials') },
                 ...studies.map(({ id, title }) => ({ value: id, text: title })),
               ]}
             />
             <a href={cohortTableAddress(study)} download="cohort.csv">
-              Download CSV
+              {say('Download CSV')}
             </a>
           </span>
         }
       >
         {table.isError ? (
-          <Notice tone="bad" title="The trial data could not be loaded." onRetry={() => void table.refetch()}>
+          <Notice tone="bad" title={say('The trial data could not be loaded.')} onRetry={() => void table.refetch()}>
             {table.error.message}
           </Notice>
         ) : null}
@@ -91,19 +93,19 @@ export function AnalysisPage() {
           ) : (
             <Facts
               facts={[
-                { name: 'Valid, scored trials', value: <strong>{formatCount(rows.length)}</strong> },
-                { name: 'Participants', value: <strong>{formatCount(people)}</strong> },
+                { name: say('Valid, scored trials'), value: <strong>{formatCount(rows.length)}</strong> },
+                { name: say('Participants'), value: <strong>{formatCount(people)}</strong> },
                 {
-                  name: 'Simulated trials',
-                  value: simulated > 0 ? <Badge tone="warn">{formatCount(simulated)}</Badge> : 'none',
+                  name: say('Simulated trials'),
+                  value: simulated > 0 ? <Badge tone="warn">{formatCount(simulated)}</Badge> : say('none'),
                 },
-                { name: 'Columns', value: formatCount(table.data?.columns.length ?? 0) },
+                { name: say('Columns'), value: formatCount(table.data?.columns.length ?? 0) },
               ]}
             />
           )}
         </div>
       </Card>
-      <Card title="Compare cohorts" aside={<Badge>exploratory</Badge>}>
+      <Card title={say('Compare cohorts')} aside={<Badge>{say('exploratory')}</Badge>}>
         <div className={styles.holdsCompare}>
           {table.data ? (
             <CompareForm
@@ -118,14 +120,14 @@ export function AnalysisPage() {
           ) : null}
         </div>
       </Card>
-      <Card title="Quick analysis" aside={<Badge>exploratory</Badge>}>
+      <Card title={say('Quick analysis')} aside={<Badge>{say('exploratory')}</Badge>}>
         <div className={styles.holdsForm}>
           {table.data && rows.length > 0 ? (
             <QuestionForm
               key={study}
               table={table.data}
               metrics={metrics}
-              action="Run analysis"
+              action={say('Run analysis')}
               busy={started.isPending}
               onAsk={(question) => started.mutate(question)}
             />
@@ -133,54 +135,56 @@ export function AnalysisPage() {
             <Skeleton height="140px" />
           ) : (
             <p className={styles.muted}>
-              No trial has been scored yet.{' '}
-              <Link href="/analysis/example">See an example with the published study.</Link>
+              <Sentence
+                text="No trial has been scored yet. <link>See an example with the published study.</link>"
+                parts={{ link: (words) => <Link href="/analysis/example">{words}</Link> }}
+              />
             </p>
           )}
         </div>
         {started.isError ? (
-          <Notice tone="bad" title="The analysis was not started.">
+          <Notice tone="bad" title={say('The analysis was not started.')}>
             {started.error.message}
           </Notice>
         ) : null}
       </Card>
-      <Card title="Locked plans">
+      <Card title={say('Locked plans')}>
         {plans.isError ? (
-          <Notice tone="bad" title="The plans could not be loaded." onRetry={() => void plans.refetch()}>
+          <Notice tone="bad" title={say('The plans could not be loaded.')} onRetry={() => void plans.refetch()}>
             {plans.error.message}
           </Notice>
         ) : (
           <DataTable<PlanSummary>
-            caption="Locked plans"
-            order="newest first"
+            caption={say('Locked plans')}
+            order={say('newest first')}
             rows={plans.data?.plans}
             keyOf={({ id }) => id}
-            empty="No plan has been locked yet."
+            empty={say('No plan has been locked yet.')}
             columns={[
               {
-                name: 'Plan',
+                name: marked('Plan'),
                 by: (one) => one.title,
                 cell: (one) => <Link href={`/analysis/plans/${one.id}`}>{one.title}</Link>,
               },
-              { name: 'Data', by: (one) => one.study, cell: (one) => one.study ?? 'all trials' },
+              { name: marked('Data'), by: (one) => one.study, cell: (one) => one.study ?? say('all trials') },
               {
-                name: 'Locked',
+                name: marked('Locked'),
                 by: (one) => one.made_utc_us,
                 cell: (one) => `${formatDateTime(one.made_utc_us)}, ${one.made_by}`,
               },
               {
-                name: 'Trials when locked',
+                name: marked('Trials when locked'),
                 by: (one) => one.trials_then,
                 cell: (one) => formatCount(one.trials_then),
                 number: true,
               },
               {
-                name: 'Timing',
+                name: marked('Timing'),
                 cell: (one) =>
                   one.data_seen || one.trials_then > 0 ? (
-                    <Badge tone="warn">data already existed</Badge>
+                    <Badge tone="warn">{say('data already existed')}</Badge>
                   ) : (
-                    <Badge tone="good">locked before data</Badge>
+                    <Badge tone="good">{say('locked before data')}</Badge>
                   ),
               },
             ]}

@@ -1,18 +1,19 @@
 /** Columns of the trial data: which can be endpoints or predictors, and what they are called. Pure. */
 import type { CohortTable, MetricFacts } from '@/api';
+import { marked, say } from '@/language';
 
 const kNames: Record<string, string | undefined> = {
-  correct: 'Correct answer',
-  experience_years: 'Years of experience',
-  cohort: 'Cohort',
-  level: 'Level of training',
-  number: 'Trial number in the study',
-  running_number: 'Running trial number',
-  year: 'Calendar date, years',
-  case: 'Scenario or case',
-  participant: 'Participant',
-  study: 'Study',
-  rig: 'Rig',
+  correct: marked('Correct answer'),
+  experience_years: marked('Years of experience'),
+  cohort: marked('Cohort'),
+  level: marked('Level of training'),
+  number: marked('Trial number in the study'),
+  running_number: marked('Running trial number'),
+  year: marked('Calendar date, years'),
+  case: marked('Scenario or case'),
+  participant: marked('Participant'),
+  study: marked('Study'),
+  rig: marked('Rig'),
 };
 const kNoEndpoints: readonly string[] = ['number', 'running_number', 'year', 'experience_years', 'simulated'];
 const kPredictors: readonly string[] = [
@@ -30,13 +31,13 @@ type Column = CohortTable['columns'][number];
 
 /** "Operation time, s (palpation)": label, unit, and the rig whose trials alone have the metric. */
 function metricName({ label, unit, rig }: MetricFacts): string {
-  return [label, unit === '1' || unit === '' ? '' : `, ${unit}`, rig === null ? '' : ` (${rig})`].join('');
+  return [say(label), unit === '1' || unit === '' ? '' : `, ${unit}`, rig === null ? '' : ` (${say(rig)})`].join('');
 }
 
 /** What a column is called; the id follows where two metrics would have the same name. */
 export function columnName(name: string, metrics: readonly MetricFacts[]): string {
   const metric = metrics.find(({ id }) => id === name);
-  if (kNames[name] !== undefined || !metric) return kNames[name] ?? name.replaceAll('_', ' ');
+  if (kNames[name] !== undefined || !metric) return say(kNames[name] ?? name.replaceAll('_', ' '));
   const shown = metricName(metric);
   return metrics.filter((other) => metricName(other) === shown).length > 1 ? `${shown} [${name}]` : shown;
 }

@@ -1,5 +1,6 @@
 import { useState } from 'react';
 import type { CohortTable, MetricFacts } from '@/api';
+import { marked, say } from '@/language';
 import { Button, Select, Term } from '@/ui';
 import { formatCount } from '@/units';
 import styles from './analysis.module.css';
@@ -11,8 +12,9 @@ export interface Comparison {
   readonly options: { readonly level: string; readonly reference: string };
 }
 
-const kTest =
-  'Welch’s t test on the mean of each person, because trials of one person are not independent; the size of the difference as Hedges’ g with its 95 % interval.';
+const kTest = marked(
+  'Welch’s t test on the mean of each person, because trials of one person are not independent; the size of the difference as Hedges’ g with its 95 % interval.',
+);
 
 /** Each person counts once, by the mean of their trials. */
 export const comparison = (endpoint: string, level: string, reference: string): Comparison => ({
@@ -43,9 +45,9 @@ export function CompareForm({
   if (cohorts.length < 2)
     return (
       <p className={styles.muted}>
-        Two cohorts with scored trials are needed.{' '}
-        {cohorts[0] === undefined ? 'There is none yet.' : `There is one: ${cohorts[0]}.`} Trials belong to a cohort by
-        their assignment, and their trainee has agreed to research.
+        {say('Two cohorts with scored trials are needed.')}{' '}
+        {cohorts[0] === undefined ? say('There is none yet.') : say('There is one: {name}.', { name: cohorts[0] })}{' '}
+        {say('Trials belong to a cohort by their assignment, and their trainee has agreed to research.')}
       </p>
     );
   const options = cohorts.map((name) => ({ value: name, text: name }));
@@ -54,15 +56,20 @@ export function CompareForm({
   return (
     <div className={styles.stack}>
       <div className={styles.fields}>
-        <Select label="Cohort" value={level} options={options} onChange={(event) => setLevel(event.target.value)} />
         <Select
-          label="Compared with"
+          label={say('Cohort')}
+          value={level}
+          options={options}
+          onChange={(event) => setLevel(event.target.value)}
+        />
+        <Select
+          label={say('Compared with')}
           value={reference}
           options={options}
           onChange={(event) => setReference(event.target.value)}
         />
         <Select
-          label="By"
+          label={say('By')}
           value={endpoint}
           options={endpoints.map(({ name }) => ({ value: name, text: columnName(name, metrics) }))}
           onChange={(event) => setEndpoint(event.target.value)}
@@ -71,25 +78,28 @@ export function CompareForm({
       <div className={styles.end}>
         <p className={styles.muted} role="status">
           {level === reference
-            ? 'Choose two different cohorts.'
+            ? say('Choose two different cohorts.')
             : few
-              ? `${few.name} has fewer than two persons with this endpoint.`
+              ? say('{name} has fewer than two persons with this endpoint.', { name: few.name })
               : sizes
-                  .map(
-                    ({ name, persons, trials }) =>
-                      `${name}: ${formatCount(persons)} persons, ${formatCount(trials)} trials`,
+                  .map(({ name, persons, trials }) =>
+                    say('{name}: {persons} persons, {trials} trials', {
+                      name,
+                      persons: formatCount(persons),
+                      trials: formatCount(trials),
+                    }),
                   )
                   .join(' · ')}
         </p>
-        <Term align="end" definition={kTest}>
-          Test
+        <Term align="end" definition={say(kTest)}>
+          {say('Test')}
         </Term>
         <Button
           look="solid"
           disabled={busy || level === reference || few !== undefined}
           onClick={() => onCompare(comparison(endpoint, level, reference))}
         >
-          {busy ? 'Starting…' : 'Compare'}
+          {busy ? say('Starting…') : say('Compare')}
         </Button>
       </div>
     </div>

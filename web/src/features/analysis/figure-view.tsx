@@ -1,5 +1,6 @@
 import type { AnalysisFigure, MetricFacts } from '@/api';
 import { curve, Plane, type Places } from '@/charts';
+import { say } from '@/language';
 import { formatCount } from '@/units';
 import styles from './analysis.module.css';
 import { axisName } from './columns';
@@ -61,7 +62,7 @@ function PanelView({ panel, metrics }: { readonly panel: Panel; readonly metrics
   const x = axisName(panel.x_label, metrics),
     y = axisName(panel.y_label, metrics);
   const drawn = lines.filter(({ points }) => !points);
-  const title = panel.title === '' ? `${y} by ${x}` : panel.title;
+  const title = panel.title === '' ? say('{y} by {x}', { y, x }) : panel.title;
   return (
     <div className={styles.panel}>
       <h3>{title}</h3>
@@ -69,13 +70,17 @@ function PanelView({ panel, metrics }: { readonly panel: Panel; readonly metrics
         across={{ title: x, ...across, ...(grouped ? { ticks: groupTicks(groups) } : {}) }}
         up={{ title: y, ...up }}
         height_px={280}
-        summary={`${title}: ${formatCount(lines.reduce((n, line) => n + (line.points ? line.x.length : 0), 0))} points${[...drawn, ...ribbons].map(({ label }) => (label === '' ? '' : `, ${label}`)).join('')}.`}
+        summary={say('{title}: {count} points{curves}.', {
+          title,
+          count: formatCount(lines.reduce((n, line) => n + (line.points ? line.x.length : 0), 0)),
+          curves: [...drawn, ...ribbons].map(({ label }) => (label === '' ? '' : `, ${label}`)).join(''),
+        })}
         data={{
           name: title,
           columns: ['series', 'x', 'y', 'low', 'high'],
           rows: [
             ...lines.flatMap((line) =>
-              line.x.map((value, i) => [line.label || 'points', value, line.y[i] ?? null, null, null]),
+              line.x.map((value, i) => [line.label || say('points'), value, line.y[i] ?? null, null, null]),
             ),
             ...ribbons.flatMap((band) =>
               band.x.map((value, i) => [band.label, value, null, band.low[i] ?? null, band.high[i] ?? null]),

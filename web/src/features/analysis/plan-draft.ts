@@ -1,4 +1,6 @@
 /** An analysis plan as it is being written. Pure. */
+import { marked, say } from '@/language';
+
 export interface Question {
   readonly method: string;
   readonly formula: string;
@@ -32,16 +34,16 @@ export const kCorrections = [
   { value: 'hommel', text: 'Hommel' },
   { value: 'bonferroni', text: 'Bonferroni' },
   { value: 'bh', text: 'Benjamini–Hochberg' },
-  { value: 'none', text: 'none' },
+  { value: 'none', text: marked('none') },
 ] as const;
 
 /** tractus-plan/1, or what is still missing. */
 export function planOf(draft: PlanDraft): { plan: Record<string, unknown> } | { missing: string } {
   const alpha = Number(draft.alpha);
-  if (draft.title.trim() === '') return { missing: 'Enter a title.' };
-  if (draft.endpoint === '') return { missing: 'Choose an endpoint.' };
-  if (!(alpha > 0 && alpha < 0.5)) return { missing: 'α must be greater than 0 and less than 0.5.' };
-  if (draft.questions.length === 0) return { missing: 'Add at least one analysis.' };
+  if (draft.title.trim() === '') return { missing: say('Enter a title.') };
+  if (draft.endpoint === '') return { missing: say('Choose an endpoint.') };
+  if (!(alpha > 0 && alpha < 0.5)) return { missing: say('α must be greater than 0 and less than 0.5.') };
+  if (draft.questions.length === 0) return { missing: say('Add at least one analysis.') };
   return {
     plan: {
       format: 'tractus-plan/1',

@@ -2,6 +2,7 @@ import { useMutation, useQuery, useQueryClient } from '@tanstack/react-query';
 import { useState } from 'react';
 import { Link, useLocation, useSearch } from 'wouter';
 import { cohortTableQuery, lockPlan, metricsQuery, planQuery, runPlan, type AnalysisRun } from '@/api';
+import { marked, say } from '@/language';
 import {
   AskDialog,
   Badge,
@@ -22,12 +23,16 @@ import { kBlankPlan, kCorrections, planOf, type PlanDraft } from './plan-draft';
 import { columnName, endpointsOf } from './columns';
 import { QuestionForm } from './question-form';
 
-const kLockMeaning =
-  'Locking stores a hash of the whole plan with your name and the time. A locked plan can be run any number of times, but it can never be changed.';
+/** A formula, the same in every language. */
+const kExclusion = 'operation_time > 300';
+
+const kLockMeaning = marked(
+  'Locking stores a hash of the whole plan with your name and the time. A locked plan can be run any number of times, but it can never be changed.',
+);
 
 /** Endpoint and model are chosen and locked before the data are seen. */
 export function NewPlanPage() {
-  useTitle('New plan');
+  useTitle(say('New plan'));
   const study = new URLSearchParams(useSearch()).get('study') ?? '';
   const [, go] = useLocation();
   const table = useQuery(cohortTableQuery(study)),
@@ -42,45 +47,45 @@ export function NewPlanPage() {
   return (
     <div className={styles.page}>
       <p className={styles.back}>
-        <Link href="/analysis">← Analysis</Link>
+        <Link href="/analysis">{say('← Analysis')}</Link>
       </p>
-      <h1>New plan</h1>
-      <Card title="Research question">
+      <h1>{say('New plan')}</h1>
+      <Card title={say('Research question')}>
         <div className={styles.stack}>
           <div className={styles.fields}>
             <Field
-              label="Title"
+              label={say('Title')}
               value={draft.title}
               maxLength={200}
               onChange={(event) => set({ title: event.target.value })}
             />
             <Field
-              label="Question"
+              label={say('Question')}
               value={draft.question}
               maxLength={500}
-              placeholder="Does experience shorten the operation?"
+              placeholder={say('Does experience shorten the operation?')}
               onChange={(event) => set({ question: event.target.value })}
             />
           </div>
           <div className={styles.fields}>
             <Select
-              label="Endpoint"
+              label={say('Endpoint')}
               value={draft.endpoint}
               onChange={(event) => set({ endpoint: event.target.value })}
               options={[
-                { value: '', text: 'Choose…' },
+                { value: '', text: say('Choose…') },
                 ...endpoints.map(({ name }) => ({ value: name, text: columnName(name, metrics) })),
               ]}
             />
             <Select
               label={
-                <Term definition="How the p values of the primary analyses are corrected for multiple testing.">
-                  Correction
+                <Term definition={say('How the p values of the primary analyses are corrected for multiple testing.')}>
+                  {say('Correction')}
                 </Term>
               }
               value={draft.correction}
               onChange={(event) => set({ correction: event.target.value })}
-              options={kCorrections}
+              options={kCorrections.map((one) => ({ ...one, text: say(one.text) }))}
             />
             <Field
               label="α"
@@ -91,23 +96,27 @@ export function NewPlanPage() {
           </div>
           <div className={styles.fields}>
             <Field
-              label="Exclude rows where (optional)"
+              label={say('Exclude rows where (optional)')}
               value={draft.exclusion}
-              placeholder="operation_time > 300"
+              placeholder={kExclusion}
               spellCheck={false}
               onChange={(event) => set({ exclusion: event.target.value })}
             />
-            <Field label="Reason" value={draft.reason} onChange={(event) => set({ reason: event.target.value })} />
+            <Field
+              label={say('Reason')}
+              value={draft.reason}
+              onChange={(event) => set({ reason: event.target.value })}
+            />
           </div>
         </div>
       </Card>
-      <Card title="Analyses">
+      <Card title={say('Analyses')}>
         <div className={styles.stack}>
           {table.data && rows > 0 ? (
             <QuestionForm
               table={table.data}
               metrics={metrics}
-              action="Add to plan"
+              action={say('Add to plan')}
               busy={false}
               planned
               onAsk={(question) => set({ questions: [...draft.questions, question] })}
@@ -115,27 +124,30 @@ export function NewPlanPage() {
           ) : table.isPending ? (
             <Skeleton height="140px" />
           ) : (
-            <p className={styles.muted}>Columns become available after the first trial is scored.</p>
+            <p className={styles.muted}>{say('Columns become available after the first trial is scored.')}</p>
           )}
           <Table
-            caption="Analyses of the plan"
+            caption={say('Analyses of the plan')}
             rows={draft.questions}
             keyOf={(_, i) => String(i)}
-            empty="No analyses yet."
+            empty={say('No analyses yet.')}
             columns={[
-              { name: 'Question', cell: (one) => one.question },
-              { name: 'Method', cell: (one) => one.method },
-              { name: 'Formula', cell: (one) => <code>{one.formula}</code> },
-              { name: 'Family', cell: (one) => (one.primary ? <Badge tone="accent">primary</Badge> : 'exploratory') },
+              { name: marked('Question'), cell: (one) => one.question },
+              { name: marked('Method'), cell: (one) => one.method },
+              { name: marked('Formula'), cell: (one) => <code>{one.formula}</code> },
               {
-                name: <span className="hidden-visually">Actions</span>,
+                name: marked('Family'),
+                cell: (one) => (one.primary ? <Badge tone="accent">{say('primary')}</Badge> : say('exploratory')),
+              },
+              {
+                name: <span className="hidden-visually">{say('Actions')}</span>,
                 cell: (one) => (
                   <Button
                     look="quiet"
-                    label={`Remove: ${one.question}`}
+                    label={say('Remove: {question}', { question: one.question })}
                     onClick={() => set({ questions: draft.questions.filter((other) => other !== one) })}
                   >
-                    Remove
+                    {say('Remove')}
                   </Button>
                 ),
               },
@@ -148,25 +160,25 @@ export function NewPlanPage() {
           {'missing' in ready ? ready.missing : ''}
         </p>
         <Button look="solid" disabled={!('plan' in ready)} onClick={() => setLocking(true)}>
-          Lock plan…
+          {say('Lock plan…')}
         </Button>
       </div>
       {locking && 'plan' in ready ? (
         <AskDialog
-          title="Lock this plan"
-          action="Lock plan"
+          title={say('Lock this plan')}
+          action={say('Lock plan')}
           onClose={() => setLocking(false)}
           onAction={() => lockPlan(ready.plan, study, seen).then(({ id }) => go(`/analysis/plans/${id}`))}
         >
           <p>{kLockMeaning}</p>
           <p>
             {rows === 0
-              ? 'No trial has been scored yet: the plan precedes the data.'
-              : `${formatCount(rows)} scored trials already exist.`}
+              ? say('No trial has been scored yet: the plan precedes the data.')
+              : say('{rows} scored trials already exist.', { rows: formatCount(rows) })}
           </p>
           <label className={styles.check}>
-            <input type="checkbox" checked={seen} onChange={(event) => setSeen(event.target.checked)} /> I have already
-            seen these data (reanalysis)
+            <input type="checkbox" checked={seen} onChange={(event) => setSeen(event.target.checked)} />{' '}
+            {say('I have already seen these data (reanalysis)')}
           </label>
         </AskDialog>
       ) : null}
@@ -181,12 +193,19 @@ const kState: Record<AnalysisRun['state'], 'neutral' | 'accent' | 'good' | 'bad'
   failed: 'bad',
 };
 
+const kStates: Readonly<Record<AnalysisRun['state'], string>> = {
+  queued: marked('queued'),
+  running: marked('running'),
+  done: marked('done'),
+  failed: marked('failed'),
+};
+
 /** A locked plan and its runs. */
 export function PlanPage({ id }: { readonly id: string }) {
   const client = useQueryClient();
   const [, go] = useLocation();
   const query = useQuery(planQuery(id));
-  useTitle(query.data?.title ?? 'Plan');
+  useTitle(query.data?.title ?? say('Plan'));
   const started = useMutation({
     mutationFn: (snapshot: string | undefined) => runPlan(id, snapshot),
     onSuccess: async (run) => {
@@ -196,14 +215,14 @@ export function PlanPage({ id }: { readonly id: string }) {
   });
   const back = (
     <p className={styles.back}>
-      <Link href="/analysis">← Analysis</Link>
+      <Link href="/analysis">{say('← Analysis')}</Link>
     </p>
   );
   if (query.isError)
     return (
       <div className={styles.page}>
         {back}
-        <Notice tone="bad" title="The plan could not be loaded." onRetry={() => void query.refetch()}>
+        <Notice tone="bad" title={say('The plan could not be loaded.')} onRetry={() => void query.refetch()}>
           {query.error.message}
         </Notice>
       </div>
@@ -224,69 +243,78 @@ export function PlanPage({ id }: { readonly id: string }) {
         <div>
           <h1>{plan.title}</h1>
           <p className={styles.lead}>
-            Locked by {plan.made_by}, {formatDateTime(plan.made_utc_us)}, when {formatCount(plan.trials_then)} trials
-            were scored. {plan.data_seen ? 'The author had seen the data, so the results are exploratory.' : ''}
+            {say('Locked by {name}, {time}, when {count} trials were scored.', {
+              name: plan.made_by,
+              time: formatDateTime(plan.made_utc_us),
+              count: formatCount(plan.trials_then),
+            })}{' '}
+            {plan.data_seen ? say('The author had seen the data, so the results are exploratory.') : ''}
           </p>
         </div>
         <Button look="solid" disabled={started.isPending} onClick={() => started.mutate(undefined)}>
-          {started.isPending ? 'Starting…' : 'Run on current trials'}
+          {started.isPending ? say('Starting…') : say('Run on current trials')}
         </Button>
       </div>
       {started.isError ? (
-        <Notice tone="bad" title="The analysis was not started.">
+        <Notice tone="bad" title={say('The analysis was not started.')}>
           {started.error.message}
         </Notice>
       ) : null}
       <Card
-        title="Planned analyses"
+        title={say('Planned analyses')}
         aside={
-          <Term align="end" definition={kLockMeaning}>
-            locked
+          <Term align="end" definition={say(kLockMeaning)}>
+            {say('locked')}
           </Term>
         }
       >
         <Table
-          caption="Planned analyses"
+          caption={say('Planned analyses')}
           rows={plan.plan.analyses}
           keyOf={(one) => one.id}
-          empty="No analyses."
+          empty={say('No analyses.')}
           columns={[
-            { name: 'Question', cell: (one) => one.question ?? one.id },
-            { name: 'Method', cell: (one) => one.method },
-            { name: 'Formula', cell: (one) => <code>{one.formula ?? ''}</code> },
-            { name: 'Family', cell: (one) => one.family ?? 'exploratory' },
+            { name: marked('Question'), cell: (one) => one.question ?? one.id },
+            { name: marked('Method'), cell: (one) => one.method },
+            { name: marked('Formula'), cell: (one) => <code>{one.formula ?? ''}</code> },
+            { name: marked('Family'), cell: (one) => say(one.family ?? 'exploratory') },
           ]}
         />
       </Card>
-      <Card title="Runs of this plan">
+      <Card title={say('Runs of this plan')}>
         <DataTable<AnalysisRun>
-          caption="Runs"
-          order="newest first"
+          caption={say('Runs')}
+          order={say('newest first')}
           rows={plan.analyses}
           keyOf={(one) => one.id}
-          empty="This plan has not been run yet."
+          empty={say('This plan has not been run yet.')}
           columns={[
             {
-              name: 'Started',
+              name: marked('Started'),
               by: (one) => one.made_utc_us,
               cell: (one) => <Link href={`/analysis/runs/${one.id}`}>{formatDateTime(one.made_utc_us)}</Link>,
             },
             {
-              name: 'State',
+              name: marked('State'),
               by: (one) => one.state,
               cell: (one) => (
                 <Badge tone={kState[one.state]}>
-                  {one.state === 'running' ? `running, ${formatShare(one.share)}` : one.state}
+                  {one.state === 'running'
+                    ? say('running, {share}', { share: formatShare(one.share) })
+                    : say(kStates[one.state])}
                 </Badge>
               ),
             },
-            { name: 'Data', cell: (one) => (one.snapshot === null ? '–' : <code>{one.snapshot.slice(0, 12)}</code>) },
             {
-              name: <span className="hidden-visually">Actions</span>,
+              name: marked('Data'),
+              cell: (one) => (one.snapshot === null ? '–' : <code>{one.snapshot.slice(0, 12)}</code>),
+            },
+            {
+              name: <span className="hidden-visually">{say('Actions')}</span>,
               cell: (one) =>
                 one.snapshot === null ? null : (
                   <Button look="quiet" onClick={() => started.mutate(one.snapshot ?? undefined)}>
-                    Run again on the same data
+                    {say('Run again on the same data')}
                   </Button>
                 ),
             },

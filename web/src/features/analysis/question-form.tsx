@@ -1,5 +1,6 @@
 import { useState } from 'react';
 import type { CohortTable, MetricFacts } from '@/api';
+import { say } from '@/language';
 import { Button, Field, Select } from '@/ui';
 import { formatCount } from '@/units';
 import styles from './analysis.module.css';
@@ -59,50 +60,59 @@ export function QuestionForm({ table, metrics, action, busy, planned = false, on
     setOwn(null);
   };
   const usable = rowsWith(table, endpoint, method.id === 'describe' ? '1' : by);
-  const question = `${columnName(endpoint, metrics)}${method.id === 'describe' ? '' : ` by ${columnName(by, metrics).toLowerCase()}`}`;
+  const question =
+    method.id === 'describe'
+      ? columnName(endpoint, metrics)
+      : say('{endpoint} by {predictor}', {
+          endpoint: columnName(endpoint, metrics),
+          predictor: columnName(by, metrics),
+        });
   return (
     <div className={styles.stack}>
       <div className={styles.fields}>
         <Select
-          label="Endpoint"
+          label={say('Endpoint')}
           value={endpoint}
           onChange={(event) => start(methodId, event.target.value)}
           options={endpoints.map(({ name }) => ({ value: name, text: columnName(name, metrics) }))}
         />
         <Select
-          label="Predictor"
+          label={say('Predictor')}
           value={by}
           onChange={(event) => change(setBy)(event.target.value)}
           options={
             predictors.length === 0
-              ? [{ value: '1', text: 'no predictor available' }]
+              ? [{ value: '1', text: say('no predictor available') }]
               : predictors.map(({ name }) => ({ value: name, text: columnName(name, metrics) }))
           }
         />
         <Select
-          label="Method"
+          label={say('Method')}
           value={methodId}
           onChange={(event) => start(event.target.value, endpoint)}
-          options={kMethods.map(({ id, name }) => ({ value: id, text: name }))}
+          options={kMethods.map(({ id, name }) => ({ value: id, text: say(name) }))}
         />
       </div>
       <p className={styles.muted}>
-        {method.description}{' '}
+        {say(method.description)}{' '}
         {usable === 0
-          ? 'No trial has both endpoint and predictor: choose another predictor.'
-          : `${formatCount(usable)} of ${formatCount(table.rows.length)} trials have the values that it needs.`}
+          ? say('No trial has both endpoint and predictor: choose another predictor.')
+          : say('{usable} of {count} trials have the values that it needs.', {
+              usable: formatCount(usable),
+              count: formatCount(table.rows.length),
+            })}
       </p>
       <div className={styles.ask}>
         <Field
-          label="Formula (editable)"
+          label={say('Formula (editable)')}
           value={formula}
           spellCheck={false}
           onChange={(event) => setOwn(event.target.value)}
         />
         {planned ? (
           <label className={styles.check}>
-            <input type="checkbox" checked={primary} onChange={(event) => setPrimary(event.target.checked)} /> primary
-            (included in the correction for multiple testing)
+            <input type="checkbox" checked={primary} onChange={(event) => setPrimary(event.target.checked)} />{' '}
+            {say('primary (included in the correction for multiple testing)')}
           </label>
         ) : null}
         <Button
@@ -110,7 +120,7 @@ export function QuestionForm({ table, metrics, action, busy, planned = false, on
           disabled={busy || endpoint === '' || (own === null && usable === 0)}
           onClick={() => onAsk({ method: method.id, formula, question, primary })}
         >
-          {busy ? 'Starting…' : action}
+          {busy ? say('Starting…') : action}
         </Button>
       </div>
     </div>

@@ -1,42 +1,44 @@
+import { marked, say } from '@/language';
 import { Notice, Scroll } from '@/ui';
 import { formatCount, formatFigure, kNone } from '@/units';
 import styles from './analysis.module.css';
 
 const kHeadings: Record<string, string | undefined> = {
-  name: 'Term',
-  estimate: 'Estimate',
-  standard_error: 'Standard error',
+  name: marked('Term'),
+  estimate: marked('Estimate'),
+  standard_error: marked('Standard error'),
   t: 't',
   z: 'z',
   p: 'p',
-  ci95_low: '95 % from',
-  ci95_high: 'to',
-  hc3_standard_error: 'SE, robust (HC3)',
-  statistic: 'Statistic',
-  value: 'Value',
+  ci95_low: marked('95 % from'),
+  ci95_high: marked('to'),
+  hc3_standard_error: marked('SE, robust (HC3)'),
+  statistic: marked('Statistic'),
+  value: marked('Value'),
   df: 'df',
   df1: 'df',
-  df2: 'df residual',
-  effect: 'Effect',
-  size: 'Size',
-  term: 'Term',
-  assumption: 'Assumption',
-  found: 'Found',
-  advice: 'Advice',
-  level: 'Level',
-  mean: 'Mean',
-  sd: 'SD',
+  df2: marked('df residual'),
+  effect: marked('Effect'),
+  size: marked('Size'),
+  term: marked('Term'),
+  assumption: marked('Assumption'),
+  found: marked('Found'),
+  advice: marked('Advice'),
+  level: marked('Level'),
+  mean: marked('Mean'),
+  sd: marked('SD'),
   n: 'n',
   hedges_g: 'Hedges’ g',
-  hedges_g_ci95_low: '95 % from',
-  hedges_g_ci95_high: 'to',
+  hedges_g_ci95_low: marked('95 % from'),
+  hedges_g_ci95_high: marked('to'),
   cohen_d: 'Cohen’s d',
-  cohen_d_ci95_low: '95 % from',
-  cohen_d_ci95_high: 'to',
+  cohen_d_ci95_low: marked('95 % from'),
+  cohen_d_ci95_high: marked('to'),
   glass_delta: 'Glass’ Δ',
   cliff_delta: 'Cliff’s δ',
 };
-const heading = (key: string) => kHeadings[key] ?? (key.charAt(0).toUpperCase() + key.slice(1)).replaceAll('_', ' ');
+const heading = (key: string) =>
+  say(kHeadings[key] ?? (key.charAt(0).toUpperCase() + key.slice(1)).replaceAll('_', ' '));
 
 export function cell(value: unknown, key = ''): string {
   if (value === null || value === undefined) return kNone;
@@ -48,7 +50,7 @@ export function cell(value: unknown, key = ''): string {
       : Number.isInteger(value)
         ? formatCount(value)
         : formatFigure(value, '', 4);
-  if (typeof value === 'boolean') return value ? 'yes' : 'no';
+  if (typeof value === 'boolean') return value ? say('yes') : say('no');
   if (typeof value === 'string') return value;
   return JSON.stringify(value);
 }
@@ -129,9 +131,9 @@ export function ReportView({ report }: { readonly report: Line }) {
           {loose.map(([key, value]) => `${heading(key)}: ${cell(value, key)}`).join(' · ')}
         </p>
       ) : null}
-      {checks.length > 0 ? <Lines caption="Assumption checks" lines={checks} /> : null}
+      {checks.length > 0 ? <Lines caption={say('Assumption checks')} lines={checks} /> : null}
       {notes.map((note) => (
-        <Notice key={note} tone="warn" title="Note">
+        <Notice key={note} tone="warn" title={say('Note')}>
           {note}
         </Notice>
       ))}

@@ -1,14 +1,16 @@
 import { useQuery } from '@tanstack/react-query';
 import { metricsQuery, type AnalysisResult, type PlannedTest } from '@/api';
 import { Plane } from '@/charts';
+import { marked, say } from '@/language';
 import { Badge, Card, Notice, Table, Term } from '@/ui';
 import { formatCount, formatFigure } from '@/units';
 import styles from './analysis.module.css';
 import { FigureView } from './figure-view';
 import { cell, ReportView } from './report-view';
 
-const kAdjusted =
-  'The tests of one family are corrected together, so that the error rate of the whole family stays at the level that the plan states.';
+const kAdjusted = marked(
+  'The tests of one family are corrected together, so that the error rate of the whole family stays at the level that the plan states.',
+);
 
 /** Effects with their intervals beside one another, zero marked. */
 function Forest({ tests }: { readonly tests: readonly PlannedTest[] }) {
@@ -23,18 +25,18 @@ function Forest({ tests }: { readonly tests: readonly PlannedTest[] }) {
     margin = (most - least || 1) * 0.06;
   return (
     <Plane
-      across={{ title: 'effect with its 95 % interval', from: least - margin, to: most + margin }}
+      across={{ title: say('effect with its 95 % interval'), from: least - margin, to: most + margin }}
       up={{ title: '', from: 0, to: known.length, ticks: [] }}
       height_px={70 + 34 * known.length}
       data={{
-        name: 'effects',
+        name: say('effects'),
         columns: ['term', 'effect', 'ci95_low', 'ci95_high'],
         rows: known.map(({ term, size, low, high }) => [String(term), size, low, high]),
       }}
       summary={known
         .map(
           ({ term, size, low, high }) =>
-            `${term}: ${formatFigure(size)} (${formatFigure(low)} to ${formatFigure(high)})`,
+            `${term}: ${formatFigure(size)} (${say('{low} to {high}', { low: formatFigure(low), high: formatFigure(high) })})`,
         )
         .join('; ')}
     >
@@ -62,23 +64,26 @@ function Forest({ tests }: { readonly tests: readonly PlannedTest[] }) {
 function Family({ family }: { readonly family: AnalysisResult['families'][number] }) {
   return (
     <Card
-      title={`Tests: ${family.name}`}
+      title={say('Tests: {family}', { family: say(family.name) })}
       aside={
-        <Term align="end" definition={kAdjusted}>
-          corrected by {family.correction}, α = {formatFigure(family.alpha, '', 2)}
+        <Term align="end" definition={say(kAdjusted)}>
+          {say('corrected by {correction}, α = {alpha}', {
+            correction: family.correction,
+            alpha: formatFigure(family.alpha, '', 2),
+          })}
         </Term>
       }
     >
       <div className={styles.stack}>
         <Table<PlannedTest>
-          caption={`Tests of the family ${family.name}`}
+          caption={say('Tests of the family {family}', { family: say(family.name) })}
           rows={family.tests}
           keyOf={(_, i) => String(i)}
-          empty="No tests."
+          empty={say('No tests.')}
           minWidth={760}
           columns={[
             {
-              name: 'Term',
+              name: marked('Term'),
               cell: (test) => (
                 <>
                   {test.term}{' '}
@@ -87,28 +92,28 @@ function Family({ family }: { readonly family: AnalysisResult['families'][number
               ),
             },
             {
-              name: 'Statistic',
+              name: marked('Statistic'),
               cell: (test) =>
                 test.statistic === ''
                   ? (test.note ?? '–')
                   : `${test.statistic}${typeof test.df1 === 'number' ? `(${formatFigure(test.df1)}, ${formatFigure(test.df2 ?? null)})` : typeof test.df2 === 'number' ? `(${formatFigure(test.df2)})` : ''} = ${formatFigure(test.value)}`,
             },
             {
-              name: 'Effect',
+              name: marked('Effect'),
               cell: (test) =>
                 typeof test.size === 'number'
-                  ? `${test.effect ?? ''} ${formatFigure(test.size)}${typeof test.ci95_low === 'number' ? ` (${formatFigure(test.ci95_low)} to ${formatFigure(test.ci95_high ?? null)})` : ''}`
+                  ? `${test.effect ?? ''} ${formatFigure(test.size)}${typeof test.ci95_low === 'number' ? ` (${say('{low} to {high}', { low: formatFigure(test.ci95_low), high: formatFigure(test.ci95_high ?? null) })})` : ''}`
                   : '–',
             },
             { name: 'p', cell: (test) => cell(test.p, 'p'), number: true },
-            { name: 'Corrected p', cell: (test) => cell(test.p_adjusted, 'p'), number: true },
+            { name: marked('Corrected p'), cell: (test) => cell(test.p_adjusted, 'p'), number: true },
             {
-              name: 'Significant',
+              name: marked('Significant'),
               cell: (test) =>
                 test.holds === undefined ? (
                   '–'
                 ) : (
-                  <Badge tone={test.holds ? 'good' : 'neutral'}>{test.holds ? 'yes' : 'no'}</Badge>
+                  <Badge tone={test.holds ? 'good' : 'neutral'}>{test.holds ? say('yes') : say('no')}</Badge>
                 ),
             },
           ]}
@@ -124,23 +129,23 @@ function Published({ rows }: { readonly rows: AnalysisResult['published'] }) {
   const agree = held.filter(({ agrees }) => agrees === true).length;
   return (
     <Card
-      title="Published and recomputed values"
+      title={say('Published and recomputed values')}
       aside={
-        <Badge
-          tone={agree === held.length ? 'good' : 'warn'}
-        >{`${formatCount(agree)} of ${formatCount(held.length)} agree`}</Badge>
+        <Badge tone={agree === held.length ? 'good' : 'warn'}>
+          {say('{agree} of {count} agree', { agree: formatCount(agree), count: formatCount(held.length) })}
+        </Badge>
       }
     >
       <Table<AnalysisResult['published'][number]>
-        caption="Published values beside recomputed values"
+        caption={say('Published values beside recomputed values')}
         rows={rows}
         keyOf={(_, i) => String(i)}
-        empty="No published values."
+        empty={say('No published values.')}
         minWidth={760}
         columns={[
-          { name: 'Source', cell: (one) => one.where },
+          { name: marked('Source'), cell: (one) => one.where },
           {
-            name: 'Quantity',
+            name: marked('Quantity'),
             cell: (one) => (
               <>
                 {one.says}
@@ -148,15 +153,15 @@ function Published({ rows }: { readonly rows: AnalysisResult['published'] }) {
               </>
             ),
           },
-          { name: 'Published', cell: (one) => cell(one.printed), number: true },
-          { name: 'Recomputed', cell: (one) => formatFigure(one.computed, '', 5), number: true },
+          { name: marked('Published'), cell: (one) => cell(one.printed), number: true },
+          { name: marked('Recomputed'), cell: (one) => formatFigure(one.computed, '', 5), number: true },
           {
-            name: 'Agreement',
+            name: marked('Agreement'),
             cell: (one) =>
               one.agrees === true ? (
-                <Badge tone="good">agrees</Badge>
+                <Badge tone="good">{say('agrees')}</Badge>
               ) : one.agrees === false ? (
-                <Badge tone="bad">differs</Badge>
+                <Badge tone="bad">{say('differs')}</Badge>
               ) : null,
           },
         ]}
@@ -179,13 +184,16 @@ export function ResultView({ result }: { readonly result: AnalysisResult }) {
   return (
     <>
       <Card
-        title="Results"
+        title={say('Results')}
         aside={
           result.data.simulated ? (
-            <Badge tone="warn">simulated data</Badge>
+            <Badge tone="warn">{say('simulated data')}</Badge>
           ) : (
             <span className={styles.muted}>
-              {formatCount(result.data.rows_used)} of {formatCount(result.data.rows)} rows used
+              {say('{used} of {rows} rows used', {
+                used: formatCount(result.data.rows_used),
+                rows: formatCount(result.data.rows),
+              })}
             </span>
           )
         }
@@ -197,7 +205,7 @@ export function ResultView({ result }: { readonly result: AnalysisResult }) {
             ))}
           </ul>
         ) : (
-          <p className={styles.muted}>No confirmatory test was planned; exploratory results follow.</p>
+          <p className={styles.muted}>{say('No confirmatory test was planned; exploratory results follow.')}</p>
         )}
       </Card>
       {result.families.map((family) => (
@@ -215,7 +223,7 @@ export function ResultView({ result }: { readonly result: AnalysisResult }) {
           }
         >
           {one.error ? (
-            <Notice tone="bad" title="This analysis failed.">
+            <Notice tone="bad" title={say('This analysis failed.')}>
               {one.error}
             </Notice>
           ) : one.report ? (
@@ -226,7 +234,7 @@ export function ResultView({ result }: { readonly result: AnalysisResult }) {
           ) : null}
         </Card>
       ))}
-      <Card title="Methods text for publication">
+      <Card title={say('Methods text for publication')}>
         <p className={styles.methods}>{result.methods.join(' ')}</p>
       </Card>
     </>

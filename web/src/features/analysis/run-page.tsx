@@ -1,6 +1,7 @@
 import { useQuery } from '@tanstack/react-query';
 import { Link } from 'wouter';
 import { analysisFile, analysisQuery, readAnalysisResult } from '@/api';
+import { say } from '@/language';
 import { Badge, Card, Notice, Progress, Skeleton, useTitle } from '@/ui';
 import { formatDateTime } from '@/units';
 import styles from './analysis.module.css';
@@ -11,17 +12,19 @@ import { ResultView } from './result-view';
 export function RunPage({ id }: { readonly id: string }) {
   const query = useQuery(analysisQuery(id));
   const run = query.data;
-  useTitle(run?.result?.plan.title ?? 'Analysis');
+  useTitle(run?.result?.plan.title ?? say('Analysis'));
   const back = (
     <p className={styles.back}>
-      <Link href={run?.plan ? `/analysis/plans/${run.plan}` : '/analysis'}>{run?.plan ? '← Plan' : '← Analysis'}</Link>
+      <Link href={run?.plan ? `/analysis/plans/${run.plan}` : '/analysis'}>
+        {run?.plan ? say('← Plan') : say('← Analysis')}
+      </Link>
     </p>
   );
   if (query.isError)
     return (
       <div className={styles.page}>
         {back}
-        <Notice tone="bad" title="The analysis could not be loaded." onRetry={() => void query.refetch()}>
+        <Notice tone="bad" title={say('The analysis could not be loaded.')} onRetry={() => void query.refetch()}>
           {query.error.message}
         </Notice>
       </div>
@@ -39,41 +42,45 @@ export function RunPage({ id }: { readonly id: string }) {
       {back}
       <div className={styles.head}>
         <div>
-          <h1>{run.result?.plan.title ?? 'Analysis'}</h1>
+          <h1>{run.result?.plan.title ?? say('Analysis')}</h1>
           <p className={styles.lead}>
             {formatDateTime(run.made_utc_us)}, {run.made_by}.{' '}
-            {run.plan === null ? <Badge>exploratory</Badge> : <Badge tone="accent">locked plan</Badge>}{' '}
+            {run.plan === null ? (
+              <Badge>{say('exploratory')}</Badge>
+            ) : (
+              <Badge tone="accent">{say('locked plan')}</Badge>
+            )}{' '}
             {run.same_digits === true ? (
-              <Badge tone="good">reproduced exactly on the same data</Badge>
+              <Badge tone="good">{say('reproduced exactly on the same data')}</Badge>
             ) : run.same_digits === false ? (
-              <Badge tone="bad">differs from an earlier run on the same data</Badge>
+              <Badge tone="bad">{say('differs from an earlier run on the same data')}</Badge>
             ) : null}
           </p>
         </div>
         <span className={styles.buttons} data-waiting={run.state !== 'done' || undefined}>
           <a href={analysisFile(id, 'report.html')} target="_blank" rel="noreferrer">
-            Report (new tab)
+            {say('Report (new tab)')}
           </a>
           <a href={analysisFile(id, 'data.csv')} download>
-            Data (CSV)
+            {say('Data (CSV)')}
           </a>
           <a href={analysisFile(id, 'dictionary.json')} download>
-            Data dictionary
+            {say('Data dictionary')}
           </a>
           <a href={analysisFile(id, 'result.json')} download>
-            All results (JSON)
+            {say('All results (JSON)')}
           </a>
         </span>
       </div>
       {run.state === 'failed' ? (
-        <Notice tone="bad" title="The analysis failed.">
+        <Notice tone="bad" title={say('The analysis failed.')}>
           {run.error}
         </Notice>
       ) : null}
       {run.state === 'queued' || run.state === 'running' ? (
         <>
-          <Card title="Running">
-            <Progress done={run.share} of={1} label="Progress" />
+          <Card title={say('Running')}>
+            <Progress done={run.share} of={1} label={say('Progress')} />
           </Card>
           <Skeleton height="640px" />
         </>
@@ -87,17 +94,18 @@ const kPublished = readAnalysisResult(published);
 
 /** The published probing study's tables, recomputed: what an analysis looks like when it is done. */
 export function ExamplePage() {
-  useTitle('Published tables');
+  useTitle(say('Published tables'));
   return (
     <div className={styles.page}>
       <p className={styles.back}>
-        <Link href="/analysis">← Analysis</Link>
+        <Link href="/analysis">{say('← Analysis')}</Link>
       </p>
       <div>
-        <h1>Published tables, recomputed</h1>
+        <h1>{say('Published tables, recomputed')}</h1>
         <p className={styles.lead}>
-          Tables 2 to 5 of the study of ten surgeons on the probing simulator, computed by the plan that is included in
-          Tractus: published values, recomputed values, and the results of a more suitable analysis.
+          {say(
+            'Tables 2 to 5 of the study of ten surgeons on the probing simulator, computed by the plan that is included in Tractus: published values, recomputed values, and the results of a more suitable analysis.',
+          )}
         </p>
       </div>
       <ResultView result={kPublished} />

@@ -14,6 +14,7 @@ import {
   type OwnEffect,
   type Rig,
 } from '@/api';
+import { say } from '@/language';
 import { Badge, Button, Card, Notice, Select, Skeleton, Term } from '@/ui';
 import { formatClock, formatFigure } from '@/units';
 import { Headline, primaryUnit } from './comparison-parts';
@@ -32,13 +33,19 @@ interface Props {
   readonly requested: readonly string[];
 }
 
-/** Names of the effects that a fit adds. */
+/** Names of the effects that a fit adds; empty: none. */
 export const addedEffects = (run: Pick<LabRunSummary, 'add' | 'own'>) =>
   joined(
     [...run.add, ...run.own.map((name) => (name.startsWith('expression:') ? name : `expression:${name}`))].map(
       effectName,
     ),
-  ) || 'no effect added';
+  );
+
+/** What a fit is called beside the model that it came from. */
+const fittedName = (run: Pick<LabRunSummary, 'add' | 'own'>) => {
+  const effects = addedEffects(run);
+  return effects === '' ? say('fitted') : say('with {effects}', { effects });
+};
 
 function Choice({
   effect,
@@ -54,7 +61,8 @@ function Choice({
     <label className={styles.effect}>
       <input type="checkbox" checked={on} onChange={toggle} />
       <span className={styles.choiceName}>
-        {effectName(effect.id)} <Badge tone={effect.kind === 'measurement' ? 'warn' : 'neutral'}>{kind.label}</Badge>
+        {effectName(effect.id)}{' '}
+        <Badge tone={effect.kind === 'measurement' ? 'warn' : 'neutral'}>{say(kind.label)}</Badge>
       </span>
       <code>{effect.equation}</code>
       <span className={styles.muted}>{effect.summary}</span>
@@ -85,32 +93,34 @@ function Chooser({
   const toggle = (id: string) =>
     setChosen((before) => (before.includes(id) ? before.filter((one) => one !== id) : [...before, id]));
   const ready = withOwn ? own !== null : true;
-  const what = joined([...chosen.map(effectName), ...(withOwn ? ['the custom formula'] : [])]);
+  const what = joined([...chosen.map(effectName), ...(withOwn ? [say('the custom formula')] : [])]);
   return (
-    <Card title="Add effects manually">
+    <Card title={say('Add effects manually')}>
       <div className={styles.stack}>
         <fieldset className={styles.effects}>
-          <legend className="hidden-visually">Effects of the catalogue</legend>
+          <legend className="hidden-visually">{say('Effects of the catalogue')}</legend>
           {list.effects.map((effect) => (
             <Choice key={effect.id} effect={effect} on={chosen.includes(effect.id)} toggle={() => toggle(effect.id)} />
           ))}
         </fieldset>
         <label className={styles.check}>
-          <input type="checkbox" checked={withOwn} onChange={(event) => setWithOwn(event.target.checked)} /> Custom
-          formula
+          <input type="checkbox" checked={withOwn} onChange={(event) => setWithOwn(event.target.checked)} />{' '}
+          {say('Custom formula')}
         </label>
         {withOwn ? <OwnFormula rig={rig} list={list} onOwn={setOwn} /> : null}
         {started.isError ? (
-          <Notice tone="bad" title="The fit was not started.">
+          <Notice tone="bad" title={say('The fit was not started.')}>
             {started.error.message}
           </Notice>
         ) : null}
         <div className={styles.go}>
           <p className={styles.muted}>
-            {what === '' ? 'No effect is selected: only the parameters of the model are fitted.' : `Fit with ${what}.`}
+            {what === ''
+              ? say('No effect is selected: only the parameters of the model are fitted.')
+              : say('Fit with {effects}.', { effects: what })}
           </p>
           <Button look="solid" disabled={!ready || started.isPending} onClick={() => started.mutate()}>
-            {started.isPending ? 'Starting…' : what === '' ? 'Fit' : 'Add and fit'}
+            {started.isPending ? say('Starting…') : what === '' ? say('Fit') : say('Add and fit')}
           </Button>
         </div>
       </div>
@@ -133,19 +143,24 @@ function Fitted({
 }) {
   const unit = primaryUnit(run),
     what = addedEffects(run);
-  const name = what === 'no effect added' ? 'fitted' : `with ${what}`;
+  const name = fittedName(run);
   const drawable: Drawable | null = run.comparisons
-    ? { run, ...run.comparisons, rig, names: { before: 'as supplied', after: run.comparisons.after ? name : null } }
+    ? {
+        run,
+        ...run.comparisons,
+        rig,
+        names: { before: say('as supplied'), after: run.comparisons.after ? name : null },
+      }
     : null;
   const better = fit.held_out_rmse !== null && fit.base.rmse !== null && fit.held_out_rmse < fit.base.rmse;
   return (
     <>
       <Card
-        title={`Error, ${name}`}
+        title={say('Error, {model}', { model: name })}
         aside={
           run.model_ready ? (
             <Link href={workAddress(model, set, 'publish')} className={styles.solidLink}>
-              Publish this model
+              {say('Publish this model')}
             </Link>
           ) : null
         }
@@ -153,17 +168,24 @@ function Fitted({
         <div className={styles.stack}>
           <p role="status">
             {better
-              ? `Error on held-out trials: ${formatFigure(fit.held_out_rmse, unit)}. Model as supplied: ${formatFigure(fit.base.rmse, unit)}. Noise floor: ${formatFigure(fit.noise_floor, unit)}.`
-              : `The fit does not improve the model. Error on held-out trials: ${formatFigure(fit.held_out_rmse, unit)}. Model as supplied: ${formatFigure(fit.base.rmse, unit)}.`}
-            {fit.converged ? '' : ' The fit did not converge.'}
+              ? say('Error on held-out trials: {error}. Model as supplied: {before}. Noise floor: {floor}.', {
+                  error: formatFigure(fit.held_out_rmse, unit),
+                  before: formatFigure(fit.base.rmse, unit),
+                  floor: formatFigure(fit.noise_floor, unit),
+                })
+              : say(
+                  'The fit does not improve the model. Error on held-out trials: {error}. Model as supplied: {before}.',
+                  { error: formatFigure(fit.held_out_rmse, unit), before: formatFigure(fit.base.rmse, unit) },
+                )}
+            {fit.converged ? '' : ` ${say('The fit did not converge.')}`}
           </p>
           <ErrorSteps
             unit={unit}
             noise_floor={fit.noise_floor}
             steps={[
-              { name: 'As supplied', rmse: fit.base.rmse, held_out_rmse: fit.base.rmse },
+              { name: say('As supplied'), rmse: fit.base.rmse, held_out_rmse: fit.base.rmse },
               {
-                name: what === 'no effect added' ? 'Fitted' : `+ ${what}`,
+                name: what === '' ? say('Fitted') : `+ ${what}`,
                 rmse: fit.rmse,
                 held_out_rmse: fit.held_out_rmse,
               },
@@ -177,23 +199,27 @@ function Fitted({
         </div>
       </Card>
       {drawable ? (
-        <Card title="Comparison with the supplied model">
+        <Card title={say('Comparison with the supplied model')}>
           <div className={styles.stack}>
             <Headline before={drawable.before} after={drawable.after} names={drawable.names} />
             <Series drawable={drawable} />
           </div>
         </Card>
       ) : null}
-      <Card title="Fitted parameters">
+      <Card title={say('Fitted parameters')}>
         <Parameters estimates={fit.parameters} />
         {fit.correlations.length > 0 ? (
           <p className={styles.muted}>
-            <Term definition="Two fitted parameters whose errors are correlated: the measurements determine their combination better than either of them.">
-              Correlated parameters
+            <Term
+              definition={say(
+                'Two fitted parameters whose errors are correlated: the measurements determine their combination better than either of them.',
+              )}
+            >
+              {say('Correlated parameters')}
             </Term>
             :{' '}
             {fit.correlations
-              .map(({ between, correlation }) => `${between.join(' and ')} (${formatFigure(correlation, '', 2)})`)
+              .map(({ between, correlation }) => `${joined(between)} (${formatFigure(correlation, '', 2)})`)
               .join('; ')}
             .
           </p>
@@ -219,7 +245,7 @@ export function AddStep(props: Props) {
       {error ? (
         <Notice
           tone="bad"
-          title="Part of this page could not be loaded."
+          title={say('Part of this page could not be loaded.')}
           onRetry={() => {
             void list.refetch();
             void runs.refetch();
@@ -237,12 +263,12 @@ export function AddStep(props: Props) {
       {fits.length > 1 ? (
         <div className={styles.pick}>
           <Select
-            label="Fit"
+            label={say('Fit')}
             value={shown?.id ?? ''}
             onChange={(event) => setPicked(event.target.value)}
             options={fits.map((fit) => ({
               value: fit.id,
-              text: `${addedEffects(fit)}, ${formatClock(fit.made_utc_us)}`,
+              text: `${addedEffects(fit) || say('no effect added')}, ${formatClock(fit.made_utc_us)}`,
             }))}
           />
         </div>
@@ -250,10 +276,10 @@ export function AddStep(props: Props) {
       {run?.fit ? (
         <Fitted run={run} fit={run.fit} model={model} set={set} rig={rig} />
       ) : run ? (
-        <Card title={`Error with ${addedEffects(run)}`}>
+        <Card title={say('Error, {model}', { model: fittedName(run) })}>
           <RunState
             run={run}
-            what="The fit"
+            what={say('The fit')}
             again={() => {
               setPicked(null);
             }}

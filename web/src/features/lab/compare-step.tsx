@@ -1,5 +1,6 @@
 import { useState } from 'react';
 import type { Comparison, LabRun, ModelVersion } from '@/api';
+import { say } from '@/language';
 import { Card, Select } from '@/ui';
 import { formatDateTime } from '@/units';
 import { Channels, Headline, Phases, primaryOf, TrialChoice } from './comparison-parts';
@@ -36,13 +37,13 @@ export function Series({ drawable, region = null }: { readonly drawable: Drawabl
   const [pickedChannel, setChannel] = useState<string | null>(null);
   const trial = before.trials.find(({ id }) => id === pickedTrial) ?? worstTrial(before);
   const channel = channels.find(({ name }) => name === pickedChannel) ?? first;
-  if (!trial || !channel) return <p>There are no data to draw.</p>;
+  if (!trial || !channel) return <p>{say('There are no data to draw.')}</p>;
   return (
     <div className={styles.series}>
       <div className={styles.side}>
         {channels.length > 1 ? (
           <Select
-            label="Channel"
+            label={say('Channel')}
             value={channel.name}
             onChange={(event) => setChannel(event.target.value)}
             options={channels.map(({ name }) => ({ value: name, text: channelNameOf(name, rig) }))}
@@ -84,18 +85,21 @@ export function CompareStep({ drawable, versions, against, setAgainst }: Props) 
   return (
     <>
       <Card
-        title="Model error"
+        title={say('Model error')}
         aside={
           versions.length > 0 ? (
             <Select
-              label={<span className="hidden-visually">Second version to compare</span>}
+              label={<span className="hidden-visually">{say('Second version to compare')}</span>}
               value={against ?? ''}
               onChange={(event) => setAgainst(event.target.value === '' ? null : event.target.value)}
               options={[
-                { value: '', text: 'No second version' },
+                { value: '', text: say('No second version') },
                 ...versions.map(({ id, name, note, made_utc_us }) => ({
                   value: id,
-                  text: `Compare with: ${name}${note === '' ? '' : `, ${note}`} (${formatDateTime(made_utc_us)})`,
+                  text: say('Compare with: {model} ({time})', {
+                    model: note === '' ? name : `${name}, ${note}`,
+                    time: formatDateTime(made_utc_us),
+                  }),
                 })),
               ]}
             />
@@ -104,20 +108,21 @@ export function CompareStep({ drawable, versions, against, setAgainst }: Props) 
       >
         <Headline before={before} after={after} names={names} />
         <p className={styles.muted} data-part="as-published">
-          The model as published, with all parameters unchanged. “Missing effects” first fits the parameters to these
-          measurements and therefore starts from a smaller error.
+          {say(
+            'The model as published, with all parameters unchanged. “Missing effects” first fits the parameters to these measurements and therefore starts from a smaller error.',
+          )}
         </p>
       </Card>
-      <Card title="Measured and simulated">
+      <Card title={say('Measured and simulated')}>
         <Series drawable={drawable} />
       </Card>
       {shown ? (
         <Card
-          title="Error distribution"
+          title={say('Error distribution')}
           aside={
             channels.length > 1 ? (
               <Select
-                label={<span className="hidden-visually">Channel of the distributions</span>}
+                label={<span className="hidden-visually">{say('Channel of the distributions')}</span>}
                 value={shown.name}
                 onChange={(event) => setPicked(event.target.value)}
                 options={channels.map(({ name }) => ({ value: name, text: channelNameOf(name, rig) }))}
@@ -133,10 +138,10 @@ export function CompareStep({ drawable, versions, against, setAgainst }: Props) 
         </Card>
       ) : null}
       <div className={styles.two}>
-        <Card title="Error by channel">
+        <Card title={say('Error by channel')}>
           <Channels before={before} after={after} names={names} rig={rig} />
         </Card>
-        <Card title="Error by phase">
+        <Card title={say('Error by phase')}>
           <Phases comparison={before} />
         </Card>
       </div>

@@ -1,20 +1,28 @@
 import type { Comparison, LabRun } from '@/api';
+import { marked, say } from '@/language';
 import { Bar, Facts, Scroll, Term } from '@/ui';
-import { formatCount, formatDuration, formatFigure, formatShare, kNone, share } from '@/units';
+import { formatDuration, formatFigure, formatShare, kNone, share } from '@/units';
 import styles from './lab.module.css';
 import type { Names } from './overlay';
-import { channelNameOf, channelUnit } from './names';
+import { channelNameOf, channelUnit, trialCount } from './names';
 
-export const kFloorMeaning =
-  'The error that noise alone causes, estimated from the measurements themselves. No model can have a smaller error.';
-export const kErrorMeaning = 'Root mean square of measured − simulated over all judged samples.';
-const kJudgedMeaning =
-  'Samples where the motion is known well enough to judge the model. Left out: samples at a border between layers, and samples whose motion is too noisy.';
-export const kExplainedMeaning =
-  'Share of the variation beyond noise that the model reproduces: 100 % at the noise floor, 0 % for a model that is no better than the mean.';
+export const kFloorMeaning = marked(
+  'The error that noise alone causes, estimated from the measurements themselves. No model can have a smaller error.',
+);
+export const kErrorMeaning = marked('Root mean square of measured − simulated over all judged samples.');
+const kJudgedMeaning = marked(
+  'Samples where the motion is known well enough to judge the model. Left out: samples at a border between layers, and samples whose motion is too noisy.',
+);
+export const kExplainedMeaning = marked(
+  'Share of the variation beyond noise that the model reproduces: 100 % at the noise floor, 0 % for a model that is no better than the mean.',
+);
 
 export const explained = (value: number | null | undefined) =>
-  value === null || value === undefined ? kNone : value < 0 ? 'below 0 %' : formatShare(share(Math.min(value, 1)), 1);
+  value === null || value === undefined
+    ? kNone
+    : value < 0
+      ? say('below 0 %')
+      : formatShare(share(Math.min(value, 1)), 1);
 
 export const primaryOf = (comparison: Comparison) =>
   comparison.channels.find(({ name }) => name === comparison.primary) ?? comparison.channels[0];
@@ -43,7 +51,7 @@ export function Headline({
     <Facts
       facts={[
         {
-          name: <Term definition={kErrorMeaning}>Error, {names.before}</Term>,
+          name: <Term definition={say(kErrorMeaning)}>{say('Error, {model}', { model: names.before })}</Term>,
           value: (
             <strong className={styles.big} data-part="error-before">
               {formatFigure(was.rmse, unit)}
@@ -53,7 +61,9 @@ export function Headline({
         ...(is
           ? [
               {
-                name: <Term definition={kErrorMeaning}>Error, {names.after}</Term>,
+                name: (
+                  <Term definition={say(kErrorMeaning)}>{say('Error, {model}', { model: names.after ?? '' })}</Term>
+                ),
                 value: (
                   <strong className={styles.big} data-part="error-after">
                     {formatFigure(is.rmse, unit)}
@@ -63,11 +73,11 @@ export function Headline({
             ]
           : []),
         {
-          name: <Term definition={kFloorMeaning}>Noise floor</Term>,
+          name: <Term definition={say(kFloorMeaning)}>{say('Noise floor')}</Term>,
           value: <strong className={styles.big}>{formatFigure(was.noise_floor, unit)}</strong>,
         },
         {
-          name: <Term definition={kExplainedMeaning}>Explained</Term>,
+          name: <Term definition={say(kExplainedMeaning)}>{say('Explained')}</Term>,
           value: (
             <strong className={styles.big}>
               {explained(was.explained)}
@@ -78,18 +88,18 @@ export function Headline({
         ...(judged
           ? [
               {
-                name: <Term definition={kJudgedMeaning}>Judged</Term>,
-                value: <strong className={styles.big}>{formatShare(judged.share)} of the samples</strong>,
+                name: <Term definition={say(kJudgedMeaning)}>{say('Judged')}</Term>,
+                value: (
+                  <strong className={styles.big}>
+                    {say('{share} of the samples', { share: formatShare(judged.share) })}
+                  </strong>
+                ),
               },
             ]
           : []),
         {
-          name: 'Recorded',
-          value: (
-            <strong className={styles.big}>
-              {formatCount(before.trials.length)} {before.trials.length === 1 ? 'trial' : 'trials'}
-            </strong>
-          ),
+          name: say('Recorded'),
+          value: <strong className={styles.big}>{trialCount(before.trials.length)}</strong>,
         },
       ]}
     />
@@ -109,28 +119,28 @@ export function Channels({
   readonly rig: string | null;
 }) {
   return (
-    <Scroll label="Error by channel">
+    <Scroll label={say('Error by channel')}>
       <table className={styles.table}>
-        <caption className="hidden-visually">Error by channel</caption>
+        <caption className="hidden-visually">{say('Error by channel')}</caption>
         <thead>
           <tr>
-            <th scope="col">Channel</th>
+            <th scope="col">{say('Channel')}</th>
             <th scope="col" className={styles.number}>
-              Error, {names.before}
+              {say('Error, {model}', { model: names.before })}
             </th>
             {after ? (
               <th scope="col" className={styles.number}>
-                Error, {names.after}
+                {say('Error, {model}', { model: names.after ?? '' })}
               </th>
             ) : null}
             <th scope="col" className={styles.number}>
-              Noise floor
+              {say('Noise floor')}
             </th>
             <th scope="col" className={styles.number}>
               R²
             </th>
             <th scope="col" className={styles.number}>
-              Explained
+              {say('Explained')}
             </th>
           </tr>
         </thead>
@@ -156,20 +166,21 @@ export function Channels({
 }
 
 export function Phases({ comparison }: { readonly comparison: Comparison }) {
-  if (comparison.phases.length === 0) return <p className={styles.muted}>The measurements define no phases.</p>;
+  if (comparison.phases.length === 0)
+    return <p className={styles.muted}>{say('The measurements define no phases.')}</p>;
   const unit = channelUnit(comparison.primary);
   return (
-    <Scroll label="Error by phase">
+    <Scroll label={say('Error by phase')}>
       <table className={styles.table}>
-        <caption className="hidden-visually">Error by phase</caption>
+        <caption className="hidden-visually">{say('Error by phase')}</caption>
         <thead>
           <tr>
-            <th scope="col">Phase</th>
+            <th scope="col">{say('Phase')}</th>
             <th scope="col" className={styles.number}>
-              Error
+              {say('Error')}
             </th>
-            <th scope="col">Share of the error</th>
-            <th scope="col">Share of the time</th>
+            <th scope="col">{say('Share of the error')}</th>
+            <th scope="col">{say('Share of the time')}</th>
           </tr>
         </thead>
         <tbody>
@@ -210,7 +221,7 @@ export function TrialChoice({ before, after, chosen, choose }: Choosing) {
     worst = before.trials.reduce((top, { rmse }) => Math.max(top, rmse ?? 0), 1e-12);
   return (
     <fieldset className={styles.trials}>
-      <legend>Trial</legend>
+      <legend>{say('Trial')}</legend>
       {before.trials.map((trial) => {
         const better = after?.trials.find(({ id }) => id === trial.id);
         return (

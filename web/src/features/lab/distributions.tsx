@@ -1,9 +1,10 @@
 import type { Distribution, LabChannel } from '@/api';
 import { curve, Plane, stairs, type Places } from '@/charts';
+import { say } from '@/language';
 import { axisTitle, formatFigure } from '@/units';
 import styles from './distributions.module.css';
 import type { Names } from './overlay';
-import { channelName, channelQuantity, channelUnit } from './names';
+import { channelName, channelQuantity, channelUnit, joined } from './names';
 
 interface Props {
   readonly before: LabChannel;
@@ -51,11 +52,20 @@ function Bars({
   );
 }
 
+const modelsOf = ({ before, after }: Names) => joined(after === null ? [before] : [before, after]);
+
 const kBinColumns = ['signal', 'from', 'to', 'share'];
 
 /** A histogram as rows of a file. */
 const binRows = (name: string, of: Distribution | undefined): (string | number | null)[][] =>
   of ? of.shares.map((share, i) => [name, of.edges[i] ?? null, of.edges[i + 1] ?? null, share]) : [];
+
+const residualText = (model: string, of: Distribution, unit: string) =>
+  say('Residual of {model}: mean {mean}, standard deviation {sd}.', {
+    model,
+    mean: formatFigure(of.mean, unit),
+    sd: formatFigure(of.sd, unit),
+  });
 
 function Residuals({ before, after, names }: Props) {
   if (!before.residual) return null;
@@ -63,20 +73,24 @@ function Residuals({ before, after, names }: Props) {
     unit = channelUnit(before.name);
   const [from, to] = middle([before.residual, after?.residual]);
   const floor = before.noise_floor ?? Number.NaN;
-  const summary = `Residual of ${names.before}: mean ${formatFigure(before.residual.mean, unit)}, standard deviation ${formatFigure(before.residual.sd, unit)}${after?.residual ? `; ${names.after ?? ''}: mean ${formatFigure(after.residual.mean, unit)}, standard deviation ${formatFigure(after.residual.sd, unit)}` : ''}. Noise floor ${formatFigure(floor, unit)}.`;
+  const summary = [
+    residualText(names.before, before.residual, unit),
+    ...(after?.residual ? [residualText(names.after ?? '', after.residual, unit)] : []),
+    say('Noise floor: {floor}.', { floor: formatFigure(floor, unit) }),
+  ].join(' ');
   return (
     <div>
-      <h3>Residual</h3>
+      <h3>{say('Residual')}</h3>
       <Plane
-        across={{ title: axisTitle('measured − simulated', quantity), from, to }}
+        across={{ title: axisTitle(say('measured − simulated'), quantity), from, to }}
         up={{
-          title: 'share of samples',
+          title: say('share of samples'),
           from: 0,
           to: most(before.residual.shares, after?.residual?.shares ?? []) * 1.05,
         }}
         summary={summary}
         data={{
-          name: `residual of ${channelName(before.name)}`,
+          name: say('residual of {channel}', { channel: channelName(before.name) }),
           columns: kBinColumns,
           rows: [...binRows(names.before, before.residual), ...binRows(names.after ?? '', after?.residual)],
         }}
@@ -100,20 +114,20 @@ function Values({ before, after, names }: Props) {
   const [from, to] = middle([before.measured, before.simulated, after?.simulated]);
   return (
     <div>
-      <h3>Values</h3>
+      <h3>{say('Values')}</h3>
       <Plane
         across={{ title: axisTitle(channelName(before.name), channelQuantity(before.name)), from, to }}
         up={{
-          title: 'share of samples',
+          title: say('share of samples'),
           from: 0,
           to: most(before.measured.shares, before.simulated.shares, after?.simulated?.shares ?? []) * 1.05,
         }}
-        summary={`How often each value was measured, and simulated by ${names.before}${names.after === null ? '' : ` and ${names.after}`}.`}
+        summary={say('How often each value was measured, and simulated by {models}.', { models: modelsOf(names) })}
         data={{
-          name: `values of ${channelName(before.name)}`,
+          name: say('values of {channel}', { channel: channelName(before.name) }),
           columns: kBinColumns,
           rows: [
-            ...binRows('measured', before.measured),
+            ...binRows(say('measured'), before.measured),
             ...binRows(names.before, before.simulated),
             ...binRows(names.after ?? '', after?.simulated),
           ],
@@ -152,13 +166,20 @@ function Spectra({ before, after, names }: Props) {
     );
   return (
     <div>
-      <h3>Spectrum</h3>
+      <h3>{say('Spectrum')}</h3>
       <Plane
-        across={{ title: 'frequency, Hz', from: frequency[0] ?? 1, to: frequency.at(-1) ?? 10, log: true }}
-        up={{ title: `(${channelUnit(before.name)})² per Hz`, from: low, to: Math.max(...powers) * 2, log: true }}
-        summary={`Power spectrum of the measured signal and of the residual of ${names.before}${names.after === null ? '' : ` and of ${names.after}`}.`}
+        across={{ title: say('frequency, Hz'), from: frequency[0] ?? 1, to: frequency.at(-1) ?? 10, log: true }}
+        up={{
+          title: say('({unit})² per Hz', { unit: channelUnit(before.name) }),
+          from: low,
+          to: Math.max(...powers) * 2,
+          log: true,
+        }}
+        summary={say('Power spectrum of the measured signal and of the residual of {models}.', {
+          models: modelsOf(names),
+        })}
         data={{
-          name: `spectrum of ${channelName(before.name)}`,
+          name: say('spectrum of {channel}', { channel: channelName(before.name) }),
           columns: ['frequency_Hz', 'measured', names.before, ...(names.after === null ? [] : [names.after])],
           rows: found.frequency_Hz.map((at, i) => [
             at,
@@ -195,7 +216,7 @@ export function Distributions(props: Props) {
       <ul className={styles.key}>
         <li>
           <i data-series="measured" />
-          measured
+          {say('measured')}
         </li>
         <li>
           <i data-series="before" />
@@ -208,7 +229,8 @@ export function Distributions(props: Props) {
           </li>
         )}
         <li>
-          <i data-series="floor" />± noise floor
+          <i data-series="floor" />
+          {say('± noise floor')}
         </li>
       </ul>
     </>

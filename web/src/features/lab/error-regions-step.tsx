@@ -1,4 +1,5 @@
 import type { Comparison } from '@/api';
+import { say } from '@/language';
 import { Bar, Card, Scroll, Term } from '@/ui';
 import { formatFigure, formatShare } from '@/units';
 import type { Drawable } from './compare-step';
@@ -24,25 +25,29 @@ function Regions({
 }) {
   const unit = channelUnit(comparison.primary);
   if (comparison.where.length === 0)
-    return <p>The error is spread evenly: no region has a clearly larger share of the error than of the time.</p>;
+    return (
+      <p>{say('The error is spread evenly: no region has a clearly larger share of the error than of the time.')}</p>
+    );
   return (
-    <Scroll label="Regions with the largest error">
+    <Scroll label={say('Regions with the largest error')}>
       <table className={styles.table} data-part="regions">
-        <caption className="hidden-visually">Regions with the largest error</caption>
+        <caption className="hidden-visually">{say('Regions with the largest error')}</caption>
         <thead>
           <tr>
-            <th scope="col">Region</th>
-            <th scope="col">Share of the error</th>
-            <th scope="col">Share of the time</th>
+            <th scope="col">{say('Region')}</th>
+            <th scope="col">{say('Share of the error')}</th>
+            <th scope="col">{say('Share of the time')}</th>
             <th scope="col" className={styles.number}>
-              Error
+              {say('Error')}
             </th>
             <th scope="col" className={styles.number}>
               <Term
                 align="end"
-                definition="Mean of measured − simulated in the region. Positive: the force of the model is too small. Negative: it is too large."
+                definition={say(
+                  'Mean of measured − simulated in the region. Positive: the force of the model is too small. Negative: it is too large.',
+                )}
               >
-                Mean residual
+                {say('Mean residual')}
               </Term>
             </th>
           </tr>
@@ -57,7 +62,7 @@ function Regions({
                   aria-pressed={i === region}
                   onClick={() => setRegion(i === region ? null : i)}
                 >
-                  {one.words === '' ? 'everywhere' : one.words}
+                  {one.words === '' ? say('everywhere') : one.words}
                 </button>
               </th>
               <td>
@@ -91,25 +96,29 @@ export function ErrorRegionsStep({ drawable, region, setRegion }: Props) {
   return (
     <>
       <Card
-        title="Error regions"
+        title={say('Error regions')}
         aside={
           <Term
             align="end"
-            definition={`Shallow regression tree on depth, direction, speed and phase; ${before.where_method}.`}
+            definition={say('Shallow regression tree on depth, direction, speed and phase; {method}.', {
+              method: before.where_method,
+            })}
           >
-            method
+            {say('method')}
           </Term>
         }
       >
         <Regions comparison={before} region={region} setRegion={setRegion} />
-        {before.where.length > 0 ? <p className={styles.muted}>Select a region to see its samples below.</p> : null}
+        {before.where.length > 0 ? (
+          <p className={styles.muted}>{say('Select a region to see its samples below.')}</p>
+        ) : null}
       </Card>
       {rig === 'palpation' ? (
-        <Card title="Error on the wall of the tract">
+        <Card title={say('Error on the wall of the tract')}>
           <TractPaint map={run.tract_map} unit={channelUnit(before.primary)} />
         </Card>
       ) : null}
-      <Card title={chosen ? `Samples where ${chosen.words}` : 'Samples'}>
+      <Card title={chosen ? say('Samples where {condition}', { condition: chosen.words }) : say('Samples')}>
         <Series drawable={drawable} region={region} />
       </Card>
     </>

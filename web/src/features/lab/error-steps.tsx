@@ -1,4 +1,5 @@
 import { curve, Plane } from '@/charts';
+import { marked, say } from '@/language';
 import { Scroll, Term } from '@/ui';
 import { formatFigure } from '@/units';
 import styles from './error-steps.module.css';
@@ -15,8 +16,9 @@ interface Props {
   readonly unit: string;
 }
 
-export const kHeldOutMeaning =
-  'The error on trials that the fit did not use: an estimate of the error on the next recording.';
+export const kHeldOutMeaning = marked(
+  'The error on trials that the fit did not use: an estimate of the error on the next recording.',
+);
 
 /** Error after each step, on fitted and on held-out trials, with the noise floor. */
 export function ErrorSteps({ steps, noise_floor, unit }: Props) {
@@ -27,7 +29,18 @@ export function ErrorSteps({ steps, noise_floor, unit }: Props) {
   const most = Math.max(...positive, 1e-12),
     least = Math.min(...positive, most);
   const log = most / least > 12;
-  const summary = `Error step by step: ${steps.map((step) => `${step.name} ${formatFigure(step.rmse, unit)}, held out ${formatFigure(step.held_out_rmse, unit)}`).join('; ')}. Noise floor ${formatFigure(noise_floor, unit)}.`;
+  const summary = say('Error step by step: {steps}. Noise floor: {floor}.', {
+    steps: steps
+      .map(({ name, rmse, held_out_rmse }) =>
+        say('{step} {error}, held out {held_out}', {
+          step: name,
+          error: formatFigure(rmse, unit),
+          held_out: formatFigure(held_out_rmse, unit),
+        }),
+      )
+      .join('; '),
+    floor: formatFigure(noise_floor, unit),
+  });
   const line = (of: 'rmse' | 'held_out_rmse') => steps.map((step, i) => [i, step[of] ?? Number.NaN] as const);
   return (
     <div className={styles.falls} data-part="error-steps">
@@ -39,7 +52,7 @@ export function ErrorSteps({ steps, noise_floor, unit }: Props) {
           ticks: steps.map(({ name }, at) => ({ at, text: name })),
         }}
         up={{
-          title: `error, ${unit}${log ? ' (logarithmic)' : ''}`,
+          title: log ? say('error, {unit} (logarithmic)', { unit }) : say('error, {unit}', { unit }),
           from: log ? least / 1.8 : 0,
           to: log ? most * 1.4 : most * 1.12,
           log,
@@ -47,7 +60,7 @@ export function ErrorSteps({ steps, noise_floor, unit }: Props) {
         height_px={260}
         summary={summary}
         data={{
-          name: 'error by step',
+          name: say('error by step'),
           columns: ['model', `error_of_fitted_trials_in_${unit}`, `error_of_held_out_trials_in_${unit}`],
           rows: steps.map(({ name, rmse, held_out_rmse }) => [name, rmse, held_out_rmse]),
         }}
@@ -63,7 +76,7 @@ export function ErrorSteps({ steps, noise_floor, unit }: Props) {
                   y2={places.y(noise_floor)}
                 />
                 <text x={places.x(-0.5) + 4} y={places.y(noise_floor) - 4}>
-                  noise floor {formatFigure(noise_floor, unit)}
+                  {say('noise floor {floor}', { floor: formatFigure(noise_floor, unit) })}
                 </text>
               </g>
             ) : null}
@@ -88,20 +101,20 @@ export function ErrorSteps({ steps, noise_floor, unit }: Props) {
           </>
         )}
       </Plane>
-      <Scroll label="Error by step">
+      <Scroll label={say('Error by step')}>
         <table className={styles.table}>
-          <caption className="hidden-visually">Error by step</caption>
+          <caption className="hidden-visually">{say('Error by step')}</caption>
           <thead>
             <tr>
-              <th scope="col">Model</th>
+              <th scope="col">{say('Model')}</th>
               <th scope="col">
                 <i data-series="fit" />
-                Fitted trials
+                {say('Fitted trials')}
               </th>
               <th scope="col">
                 <i data-series="held" />
-                <Term align="end" definition={kHeldOutMeaning}>
-                  Held-out trials
+                <Term align="end" definition={say(kHeldOutMeaning)}>
+                  {say('Held-out trials')}
                 </Term>
               </th>
             </tr>

@@ -2,6 +2,7 @@ import { useQuery } from '@tanstack/react-query';
 import { useState } from 'react';
 import { useLocation } from 'wouter';
 import { measurementsQuery, modelsQuery } from '@/api';
+import { say, Sentence } from '@/language';
 import { Button, Skeleton, useTitle } from '@/ui';
 import styles from './lab.module.css';
 import { ModelsCard } from './models-card';
@@ -11,7 +12,7 @@ import { workAddress } from './names';
 
 /** Start page of the lab: choose measurements and a model. */
 export function LabPage() {
-  useTitle('Model lab');
+  useTitle(say('Model lab'));
   const [, go] = useLocation();
   const [pickedSet, setSet] = useState<string | null>(null);
   const [pickedModel, setModel] = useState<string | null>(null);
@@ -25,10 +26,11 @@ export function LabPage() {
   return (
     <div className={styles.page}>
       <div>
-        <h1>Model lab</h1>
+        <h1>{say('Model lab')}</h1>
         <p className={styles.lead}>
-          Compare the model of a simulator with measurements, find where it fails and which physical effect is missing,
-          add this effect, and check that the error decreases.
+          {say(
+            'Compare the model of a simulator with measurements, find where it fails and which physical effect is missing, add this effect, and check that the error decreases.',
+          )}
         </p>
       </div>
       {/* Both lists at once: one that came later would push the rest of the page down. Fetched, not pending: a list that failed is
@@ -44,11 +46,13 @@ export function LabPage() {
           <div className={styles.go}>
             <p className={styles.muted}>
               {set && model ? (
-                <>
-                  Compare <strong>{model.name}</strong> with <strong>{set.name}</strong>
-                </>
+                <Sentence
+                  text="Compare <strong>{model}</strong> with <strong>{set}</strong>"
+                  values={{ model: model.name, set: set.name }}
+                  parts={{ strong: (words) => <strong>{words}</strong> }}
+                />
               ) : (
-                'Select measurements and a model.'
+                say('Select measurements and a model.')
               )}
             </p>
             <Button
@@ -58,7 +62,7 @@ export function LabPage() {
                 if (set && model) go(workAddress(model.id, set.id));
               }}
             >
-              Compare
+              {say('Compare')}
             </Button>
           </div>
           <RunsCard />

@@ -1,6 +1,7 @@
 import { useQuery } from '@tanstack/react-query';
 import { Link } from 'wouter';
 import { atWork, effectsQuery, reportAddress, startDiagnosis, type Diagnosis, type LabRun, type Rig } from '@/api';
+import { say, Sentence } from '@/language';
 import { Badge, Button, Card, Notice, Skeleton } from '@/ui';
 import { formatDuration, formatFigure, formatShare, share } from '@/units';
 import { Headline, primaryUnit } from './comparison-parts';
@@ -24,7 +25,7 @@ const kTone = { good: 'good', warn: 'warn', bad: 'bad', accent: 'accent' } as co
 
 const stepName = (name: string) =>
   name === 'base'
-    ? 'Refitted, no effect added'
+    ? say('Refitted, no effect added')
     : name.replace(/\+ ?([\w:]+)/g, (_, id: string) => `+ ${effectName(id)}`);
 
 type WeighedPrograms = NonNullable<Diagnosis['settle']>['programs'];
@@ -37,12 +38,14 @@ function Programs({ programs }: { readonly programs: WeighedPrograms }) {
       {programs.map(({ name, recording, duration_s, expected_gain, program }) => (
         <li key={name}>
           {recording}, {formatDuration(duration_s)}:{' '}
-          {expected_gain === null ? '–' : `gain ${formatShare(share(Math.max(0, Math.min(expected_gain, 1))))}`}{' '}
+          {expected_gain === null
+            ? '–'
+            : say('gain {share}', { share: formatShare(share(Math.max(0, Math.min(expected_gain, 1)))) })}{' '}
           <a
             download={`${name.replaceAll(' ', '-')}.program.json`}
             href={`data:application/json,${encodeURIComponent(JSON.stringify(program))}`}
           >
-            Program
+            {say('Program')}
           </a>
         </li>
       ))}
@@ -54,20 +57,26 @@ function Undetermined({ diagnosis }: { readonly diagnosis: Diagnosis }) {
   const { confounded, settle, notes } = diagnosis;
   if (confounded.length === 0 && !settle && notes.length === 0) return null;
   return (
-    <Card title="What these measurements cannot determine">
+    <Card title={say('What these measurements cannot determine')}>
       <div className={styles.stack}>
         {confounded.map(([a, b]) => (
           <p key={`${a} ${b}`}>
-            <strong>{effectName(a)}</strong> and <strong>{effectName(b)}</strong> cannot be distinguished with these
-            measurements: the error is nearly the same with each.
+            <Sentence
+              text="<strong>{one}</strong> and <strong>{other}</strong> cannot be distinguished with these measurements: the error is nearly the same with each."
+              values={{ one: effectName(a), other: effectName(b) }}
+              parts={{ strong: (words) => <strong>{words}</strong> }}
+            />
           </p>
         ))}
         {settle ? (
-          <Notice title="Recommended next recording">
-            {settle.recording} It would distinguish {joined(settle.between.map(effectName))}
+          <Notice title={say('Recommended next recording')}>
+            {settle.recording}{' '}
+            {say('It would distinguish {effects}.', { effects: joined(settle.between.map(effectName)) })}{' '}
             {settle.expected_gain === null
-              ? '.'
-              : `. In simulated recordings it increases the probability of the true answer by ${formatShare(share(Math.min(settle.expected_gain, 1)))}.`}
+              ? ''
+              : say('In simulated recordings it increases the probability of the true answer by {share}.', {
+                  share: formatShare(share(Math.min(settle.expected_gain, 1))),
+                })}
             <Programs programs={settle.programs} />
           </Notice>
         ) : null}
@@ -92,18 +101,18 @@ function Found({ run, diagnosis, model, set, rig }: Props & { readonly run: LabR
         ...run.comparisons,
         rig,
         names: {
-          before: found.length > 0 ? 'without effects' : 'refitted',
-          after: run.comparisons.after ? `with ${joined(found)}` : null,
+          before: found.length > 0 ? say('without effects') : say('refitted'),
+          after: run.comparisons.after ? say('with {effects}', { effects: joined(found) }) : null,
         },
       }
     : null;
   return (
     <>
       <Card
-        title="Verdict"
+        title={say('Verdict')}
         aside={
           <a href={reportAddress(run.id)} target="_blank" rel="noreferrer">
-            Report (new tab)
+            {say('Report (new tab)')}
           </a>
         }
       >
@@ -113,16 +122,16 @@ function Found({ run, diagnosis, model, set, rig }: Props & { readonly run: LabR
           {run.model_ready && found.length > 0 ? (
             <p className={styles.buttons}>
               <Link href={workAddress(model, set, 'publish')} className={styles.solidLink}>
-                Add {joined(found)} and publish
+                {say('Add {effects} and publish', { effects: joined(found) })}
               </Link>
-              <Link href={workAddress(model, set, 'add')}>Try other effects or a custom formula</Link>
+              <Link href={workAddress(model, set, 'add')}>{say('Try other effects or a custom formula')}</Link>
             </p>
           ) : null}
         </div>
       </Card>
       <Card
-        title="Error by step"
-        aside={<Badge>{diagnosis.held_out === 'trials' ? 'held out by trial' : diagnosis.held_out}</Badge>}
+        title={say('Error by step')}
+        aside={<Badge>{diagnosis.held_out === 'trials' ? say('held out by trial') : diagnosis.held_out}</Badge>}
       >
         <ErrorSteps
           steps={diagnosis.steps.map(({ model: name, ...errors }) => ({ name: stepName(name), ...errors }))}
@@ -130,13 +139,14 @@ function Found({ run, diagnosis, model, set, rig }: Props & { readonly run: LabR
           unit={unit}
         />
         <p className={styles.readable} data-part="why-two">
-          “Refitted, no effect added” has an error of {formatFigure(diagnosis.base.rmse, unit)}.{' '}
-          <Link href={workAddress(model, set)}>Compare</Link> may show a larger error, because it uses the model as
-          published; here, the parameters were first fitted to these measurements. Refitting corrects inaccurate
-          parameters; the remaining error shows what the model lacks.
+          <Sentence
+            text="“Refitted, no effect added” has an error of {error}. <link>Compare</link> may show a larger error, because it uses the model as published; here, the parameters were first fitted to these measurements. Refitting corrects inaccurate parameters; the remaining error shows what the model lacks."
+            values={{ error: formatFigure(diagnosis.base.rmse, unit) }}
+            parts={{ link: (words) => <Link href={workAddress(model, set)}>{words}</Link> }}
+          />
         </p>
       </Card>
-      <Card title="Ranked effects">
+      <Card title={say('Ranked effects')}>
         <Ranking
           ranking={diagnosis.ranking}
           effects={effects}
@@ -148,8 +158,8 @@ function Found({ run, diagnosis, model, set, rig }: Props & { readonly run: LabR
       <Undetermined diagnosis={diagnosis} />
       {drawable ? (
         <Card
-          title={drawable.names.after ? 'Residual without and with the effects' : 'Residual'}
-          aside={<Badge>fitted trials</Badge>}
+          title={drawable.names.after ? say('Residual without and with the effects') : say('Residual')}
+          aside={<Badge>{say('fitted trials')}</Badge>}
         >
           <div className={styles.stack}>
             <Headline before={drawable.before} after={drawable.after} names={drawable.names} />
@@ -157,7 +167,7 @@ function Found({ run, diagnosis, model, set, rig }: Props & { readonly run: LabR
           </div>
         </Card>
       ) : null}
-      <Card title="Fitted parameters">
+      <Card title={say('Fitted parameters')}>
         <Parameters estimates={diagnosis.parameters} />
       </Card>
     </>
@@ -171,23 +181,23 @@ export function MissingStep({ model, set, rig }: Props) {
   const { run } = view;
   if (view.error)
     return (
-      <Notice tone="bad" title="The search failed." onRetry={view.retry}>
+      <Notice tone="bad" title={say('The search failed.')} onRetry={view.retry}>
         {view.error.message}
       </Notice>
     );
   if (run === undefined) return <Skeleton height="200px" />;
   if (run === null) {
     return (
-      <Card title="Which effect is missing?">
+      <Card title={say('Which effect is missing?')}>
         <div className={styles.stack}>
           <p className={styles.readable}>
-            First, the parameters of the model are fitted. Then every effect of the catalogue is added, alone and in
-            combination, fitted on some trials and tested on the others. This takes seconds for probing and minutes for
-            palpation; you can leave the page meanwhile.
+            {say(
+              'First, the parameters of the model are fitted. Then every effect of the catalogue is added, alone and in combination, fitted on some trials and tested on the others. This takes seconds for probing and minutes for palpation; you can leave the page meanwhile.',
+            )}
           </p>
           <div>
             <Button look="solid" onClick={view.begin} disabled={view.beginning}>
-              {view.beginning ? 'Starting…' : 'Find missing effects'}
+              {view.beginning ? say('Starting…') : say('Find missing effects')}
             </Button>
           </div>
         </div>
@@ -197,11 +207,11 @@ export function MissingStep({ model, set, rig }: Props) {
   if (run.diagnosis) return <Found run={run} diagnosis={run.diagnosis} model={model} set={set} rig={rig} />;
   return (
     <>
-      <Card title="Which effect is missing?">
-        <RunState run={run} what="The search" again={view.begin} />
+      <Card title={say('Which effect is missing?')}>
+        <RunState run={run} what={say('The search')} again={view.begin} />
       </Card>
       {run.ranking && atWork(run) ? (
-        <Card title="Preliminary ranking" aside={<Badge tone="accent">in progress</Badge>}>
+        <Card title={say('Preliminary ranking')} aside={<Badge tone="accent">{say('in progress')}</Badge>}>
           <Ranking
             ranking={run.ranking}
             effects={effects}

@@ -1,45 +1,48 @@
 /** Display names of effects, channels, runs and steps of the lab. */
 import type { LabRunSummary, MeasurementSet } from '@/api';
 import { effectLabels } from '@/api/generated/effect-labels';
+import { marked, say } from '@/language';
 import { formatCount, kForce, kTorque, nameAndUnit, type Quantity } from '@/units';
 
 /** "coulomb_friction" → "Coulomb friction"; "expression:drag" → "drag (custom formula)". */
 export function effectName(id: string): string {
-  if (id.startsWith('expression:')) return `${id.slice('expression:'.length)} (custom formula)`;
-  const words = effectLabels[id] ?? id.replaceAll('_', ' ');
+  if (id.startsWith('expression:')) return say('{name} (custom formula)', { name: id.slice('expression:'.length) });
+  const words = say(effectLabels[id] ?? id.replaceAll('_', ' '));
   return words.charAt(0).toUpperCase() + words.slice(1);
 }
 
 export const kEffectKinds = {
-  force: { label: 'force', description: 'Adds a force to the law. Can be rendered at a station.' },
+  force: { label: marked('force'), description: marked('Adds a force to the law. Can be rendered at a station.') },
   structure: {
-    label: 'structure',
-    description: 'Changes the input or the response of the law. Can be rendered at a station.',
+    label: marked('structure'),
+    description: marked('Changes the input or the response of the law. Can be rendered at a station.'),
   },
   measurement: {
-    label: 'measurement',
-    description: 'Part of the measurement, not of the bone. Corrects the comparison; never rendered at a station.',
+    label: marked('measurement'),
+    description: marked(
+      'Part of the measurement, not of the bone. Corrects the comparison; never rendered at a station.',
+    ),
   },
 } as const;
 
 const kChannels: Record<string, string | undefined> = {
-  fz_N: 'Axial force',
-  tz_Nm: 'Twisting torque',
-  force_N: 'Force',
-  fx_N: 'Force, x',
-  fy_N: 'Force, y',
-  tx_Nm: 'Torque, x',
-  ty_Nm: 'Torque, y',
-  torque_Nm: 'Torque',
+  fz_N: marked('Axial force'),
+  tz_Nm: marked('Twisting torque'),
+  force_N: marked('Force'),
+  fx_N: marked('Force, x'),
+  fy_N: marked('Force, y'),
+  tx_Nm: marked('Torque, x'),
+  ty_Nm: marked('Torque, y'),
+  torque_Nm: marked('Torque'),
 };
 
-export const channelName = (channel: string) => kChannels[channel] ?? nameAndUnit(channel).name;
+export const channelName = (channel: string) => say(kChannels[channel] ?? nameAndUnit(channel).name);
 /** Palpation names force and torque by axis. */
 export const channelNameOf = (channel: string, rig: string | null) =>
   channel === 'fz_N' && rig === 'palpation'
-    ? 'Force, z'
+    ? say('Force, z')
     : channel === 'tz_Nm' && rig === 'palpation'
-      ? 'Torque, z'
+      ? say('Torque, z')
       : channelName(channel);
 export const channelUnit = (channel: string) => nameAndUnit(channel).unit;
 
@@ -50,30 +53,34 @@ export function channelQuantity(channel: string): Quantity {
 
 /** "a", "a and b", "a, b and c". */
 export const joined = (words: readonly string[]) =>
-  words.length < 2 ? (words[0] ?? '') : `${words.slice(0, -1).join(', ')} and ${words.at(-1) ?? ''}`;
+  words.length < 2
+    ? (words[0] ?? '')
+    : say('{words} and {last}', { words: words.slice(0, -1).join(', '), last: words.at(-1) ?? '' });
+
+export const trialCount = (count: number) => say('{count, plural, one {# trial} other {# trials}}', { count });
 
 export const setFacts = (set: MeasurementSet) =>
   [
-    set.rig ?? '',
-    set.trials === null ? '' : `${formatCount(set.trials)} ${set.trials === 1 ? 'trial' : 'trials'}`,
-    set.samples === null ? '' : `${formatCount(set.samples)} samples`,
+    set.rig === null ? '' : say(set.rig),
+    set.trials === null ? '' : trialCount(set.trials),
+    set.samples === null ? '' : say('{count} samples', { count: formatCount(set.samples) }),
   ]
     .filter(Boolean)
     .join(' · ');
 
 export const kRunLabels: Record<LabRunSummary['kind'], string> = {
-  comparison: 'Comparison',
-  diagnosis: 'Search for missing effects',
-  fit: 'Fit',
+  comparison: marked('Comparison'),
+  diagnosis: marked('Search for missing effects'),
+  fit: marked('Fit'),
 };
 
 export type Step = 'compare' | 'where' | 'missing' | 'add' | 'publish';
 export const kSteps: readonly { id: Step; name: string }[] = [
-  { id: 'compare', name: 'Compare' },
-  { id: 'where', name: 'Error regions' },
-  { id: 'missing', name: 'Missing effects' },
-  { id: 'add', name: 'Add effects' },
-  { id: 'publish', name: 'Publish' },
+  { id: 'compare', name: marked('Compare') },
+  { id: 'where', name: marked('Error regions') },
+  { id: 'missing', name: marked('Missing effects') },
+  { id: 'add', name: marked('Add effects') },
+  { id: 'publish', name: marked('Publish') },
 ];
 export const workAddress = (model: string, set: string, step: Step = 'compare') =>
   `/lab/work/${encodeURIComponent(model)}/${encodeURIComponent(set)}/${step}`;

@@ -1,9 +1,10 @@
 import { useMemo, useState } from 'react';
 import { makeCursor, SignalChart, whole, type Panel, type Range, type Span } from '@/charts';
+import { say } from '@/language';
 import { Button, Notice, usePalette } from '@/ui';
 import { formatDuration, formatFigure, second } from '@/units';
 import { useOverlay, type Side } from './use-overlay';
-import { channelNameOf, channelQuantity, channelUnit } from './names';
+import { channelNameOf, channelQuantity, channelUnit, joined } from './names';
 
 export interface Names {
   readonly before: string;
@@ -35,14 +36,14 @@ function panelsOf(channel: string, rig: string | null, names: Names, noise_floor
       quantity,
       height_px: 210,
       traces: [
-        { channel: 'measured', label: 'measured', colour: '--measured', width: 2.5 },
+        { channel: 'measured', label: say('measured'), colour: '--measured', width: 2.5 },
         { channel: 'before', label: names.before, colour: '--series-across' },
         ...after('after'),
       ],
     },
     {
       id: 'residual',
-      title: 'Measured − simulated',
+      title: say('Measured − simulated'),
       quantity,
       height_px: 140,
       fromZero: true,
@@ -50,7 +51,7 @@ function panelsOf(channel: string, rig: string | null, names: Names, noise_floor
         noise_floor === null
           ? []
           : [
-              { value: 2 * noise_floor, label: '± 2 × noise' },
+              { value: 2 * noise_floor, label: say('± 2 × noise') },
               { value: -2 * noise_floor, label: '' },
             ],
       traces: [
@@ -91,26 +92,37 @@ export function Overlay({ run, rig, trial, channel, names, region = null }: Prop
     setRange(around(spans, next, trial.duration_s));
   };
   const unit = channelUnit(channel);
-  const summary = `${channelNameOf(channel, rig)} of ${trial.id} over ${formatDuration(second(trial.duration_s))}, measured and simulated by ${names.before}${names.after === null ? '' : ` and by ${names.after}`}; below, the residual, with the noise floor of ${formatFigure(view.noise_floor, unit)}.`;
+  const summary = say(
+    '{channel} of {trial} over {duration}, measured and simulated by {models}; below, the residual, with the noise floor of {floor}.',
+    {
+      channel: channelNameOf(channel, rig),
+      trial: trial.id,
+      duration: formatDuration(second(trial.duration_s)),
+      models: joined(names.after === null ? [names.before] : [names.before, names.after]),
+      floor: formatFigure(view.noise_floor, unit),
+    },
+  );
   return (
     <>
       {view.error ? (
-        <Notice tone="bad" title="Part of the series could not be loaded." onRetry={view.retry}>
+        <Notice tone="bad" title={say('Part of the series could not be loaded.')} onRetry={view.retry}>
           {view.error.message}
         </Notice>
       ) : null}
       {region === null ? null : (
         <p role="status" data-part="intervals">
           {spans.length === 0
-            ? 'No sample of this trial is in the region. '
-            : `${spans.length} intervals of this trial are in the region. `}
+            ? say('No sample of this trial is in the region.')
+            : say('{count, plural, one {# interval} other {# intervals}} of this trial in the region.', {
+                count: spans.length,
+              })}{' '}
           {spans.length === 0 ? null : (
             <>
-              <Button label="Previous interval in the region" disabled={at <= 0} onClick={() => goTo(at - 1)}>
+              <Button label={say('Previous interval in the region')} disabled={at <= 0} onClick={() => goTo(at - 1)}>
                 ←
               </Button>{' '}
               <Button
-                label="Next interval in the region"
+                label={say('Next interval in the region')}
                 disabled={at >= spans.length - 1}
                 onClick={() => goTo(at + 1)}
               >
@@ -132,7 +144,7 @@ export function Overlay({ run, rig, trial, channel, names, region = null }: Prop
         cursor={cursor}
         palette={palette}
         summary={summary}
-        note="The strip shows the magnitude of the residual over the whole trial."
+        note={say('The strip shows the magnitude of the residual over the whole trial.')}
         onRange={setRange}
         onWidth={setWidth}
         button={(label, sign, press, disabled) => (

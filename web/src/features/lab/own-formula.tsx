@@ -1,6 +1,7 @@
 import { useQuery } from '@tanstack/react-query';
 import { useEffect, useId, useState } from 'react';
 import { checkEffect, type EffectList, type OwnEffect, type Rig } from '@/api';
+import { say, Sentence } from '@/language';
 import { Button, Field, Scroll, useSettled } from '@/ui';
 import styles from './lab.module.css';
 import {
@@ -32,7 +33,7 @@ function ParameterRow({
   const cell = (key: 'unit' | 'initial' | 'low' | 'high', what: string) => (
     <td>
       <input
-        aria-label={`${what} of ${name}`}
+        aria-label={say('{property} of {parameter}', { property: what, parameter: name })}
         value={parameter[key]}
         spellCheck={false}
         inputMode={key === 'unit' ? 'text' : 'decimal'}
@@ -45,10 +46,10 @@ function ParameterRow({
       <th scope="row">
         <code>{name}</code>
       </th>
-      {cell('unit', 'Unit')}
-      {cell('initial', 'Start value')}
-      {cell('low', 'Minimum')}
-      {cell('high', 'Maximum')}
+      {cell('unit', say('Unit'))}
+      {cell('initial', say('Start value'))}
+      {cell('low', say('Minimum'))}
+      {cell('high', say('Maximum'))}
     </tr>
   );
 }
@@ -78,22 +79,24 @@ export function OwnFormula({ rig, list, onOwn }: Props) {
   const mistyped = mistypedStates(draft, list.states);
   const message =
     mistyped.length > 0
-      ? 'The units are checked once each name is clear: use the state variable, or give the parameter another name.'
+      ? say(
+          'The units are checked once each name is clear: use the state variable, or give the parameter another name.',
+        )
       : own === null
-        ? `The result must have the unit ${list.adds_unit}.`
+        ? say('The result must have the unit {unit}.', { unit: list.adds_unit })
         : check.isError
           ? check.error.message
           : settled !== draft || check.isPending
-            ? 'Checking the units…'
+            ? say('Checking the units…')
             : check.data.ok
-              ? `✓ The units are consistent: the result has the unit ${list.adds_unit}.`
+              ? say('✓ The units are consistent: the result has the unit {unit}.', { unit: list.adds_unit })
               : check.data.error;
   const wrong = own !== null && (check.isError || check.data?.ok === false);
   return (
     <div className={styles.own}>
       <div className={styles.ownHead}>
         <Field
-          label="Name"
+          label={say('Name')}
           value={draft.name}
           maxLength={32}
           spellCheck={false}
@@ -101,7 +104,7 @@ export function OwnFormula({ rig, list, onOwn }: Props) {
           onChange={(event) => setDraft({ ...draft, name: event.target.value })}
         />
         <Field
-          label="Formula"
+          label={say('Formula')}
           value={draft.formula}
           maxLength={500}
           spellCheck={false}
@@ -116,26 +119,30 @@ export function OwnFormula({ rig, list, onOwn }: Props) {
       </p>
       {mistyped.map(({ typed, state }) => (
         <p key={typed} className={styles.wrong} role="status">
-          <code>{typed}</code> would be fitted as a constant. The state variable is <code>{state}</code>.{' '}
+          <Sentence
+            text="<code>{typed}</code> would be fitted as a constant. The state variable is <code>{state}</code>."
+            values={{ typed, state }}
+            parts={{ code: (words) => <code>{words}</code> }}
+          />{' '}
           <Button
             look="quiet"
             onClick={() => setDraft(withFormula(draft, withState(draft.formula, typed, state), list.states))}
           >
-            Use {state}
+            {say('Use {state}', { state })}
           </Button>
         </p>
       ))}
       {draft.parameters.length > 0 ? (
-        <Scroll label="Parameters of the formula">
+        <Scroll label={say('Parameters of the formula')}>
           <table className={`${styles.table} ${styles.inputs}`}>
-            <caption className="hidden-visually">Parameters of the formula</caption>
+            <caption className="hidden-visually">{say('Parameters of the formula')}</caption>
             <thead>
               <tr>
-                <th scope="col">Parameter</th>
-                <th scope="col">Unit</th>
-                <th scope="col">Start value</th>
-                <th scope="col">Minimum</th>
-                <th scope="col">Maximum</th>
+                <th scope="col">{say('Parameter')}</th>
+                <th scope="col">{say('Unit')}</th>
+                <th scope="col">{say('Start value')}</th>
+                <th scope="col">{say('Minimum')}</th>
+                <th scope="col">{say('Maximum')}</th>
               </tr>
             </thead>
             <tbody>
@@ -151,15 +158,15 @@ export function OwnFormula({ rig, list, onOwn }: Props) {
         </Scroll>
       ) : null}
       <details>
-        <summary>Names available in a formula</summary>
-        <Scroll label="State variables">
+        <summary>{say('Names available in a formula')}</summary>
+        <Scroll label={say('State variables')}>
           <table className={styles.table}>
-            <caption className="hidden-visually">State variables</caption>
+            <caption className="hidden-visually">{say('State variables')}</caption>
             <thead>
               <tr>
-                <th scope="col">Name</th>
-                <th scope="col">Unit</th>
-                <th scope="col">Meaning</th>
+                <th scope="col">{say('Name')}</th>
+                <th scope="col">{say('Unit')}</th>
+                <th scope="col">{say('Meaning')}</th>
               </tr>
             </thead>
             <tbody>
@@ -176,8 +183,10 @@ export function OwnFormula({ rig, list, onOwn }: Props) {
           </table>
         </Scroll>
         <p className={styles.muted}>
-          <code>+ - * / ^</code>, comparisons, <code>a ? b : c</code>, abs sqrt sign min max exp ln sin cos tan tanh pi.
-          Any other name is a parameter and is fitted.
+          <Sentence
+            text="<code>+ - * / ^</code>, comparisons, <code>a ? b : c</code>, abs sqrt sign min max exp ln sin cos tan tanh pi. Any other name is a parameter and is fitted."
+            parts={{ code: (words) => <code>{words}</code> }}
+          />
         </p>
       </details>
     </div>

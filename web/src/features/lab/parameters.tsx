@@ -1,4 +1,5 @@
 import type { Estimate } from '@/api';
+import { say } from '@/language';
 import { Badge, Scroll, Term } from '@/ui';
 import { formatWithin, nameAndUnit } from '@/units';
 import styles from './lab.module.css';
@@ -15,7 +16,7 @@ export function parameterName(pointer: string): { name: string; unit: string } {
     rest[0] !== 'base' && rest[0] !== undefined
       ? effectName(rest[0])
       : rest[1] === 'layers'
-        ? `Layer ${Number(rest[2] ?? 0) + 1}`
+        ? say('Layer {number}', { number: Number(rest[2] ?? 0) + 1 })
         : rest.slice(1).join(' ');
   const words = place === '' ? own.name : `${place}, ${own.name}`;
   return { name: words.charAt(0).toUpperCase() + words.slice(1) + component, unit: own.unit };
@@ -23,18 +24,18 @@ export function parameterName(pointer: string): { name: string; unit: string } {
 
 export function Parameters({ estimates }: { readonly estimates: readonly Estimate[] }) {
   return (
-    <Scroll label="Fitted parameters">
+    <Scroll label={say('Fitted parameters')}>
       <table className={styles.table}>
-        <caption className="hidden-visually">Fitted parameters</caption>
+        <caption className="hidden-visually">{say('Fitted parameters')}</caption>
         <thead>
           <tr>
-            <th scope="col">Parameter</th>
+            <th scope="col">{say('Parameter')}</th>
             <th scope="col" className={styles.number}>
-              <Term align="end" definition="Fitted value and its standard error, from the curvature of the fit.">
-                Value
+              <Term align="end" definition={say('Fitted value and its standard error, from the curvature of the fit.')}>
+                {say('Value')}
               </Term>
             </th>
-            <th scope="col">Assessment</th>
+            <th scope="col">{say('Assessment')}</th>
           </tr>
         </thead>
         <tbody>
@@ -46,11 +47,11 @@ export function Parameters({ estimates }: { readonly estimates: readonly Estimat
                 <td className={styles.number}>{formatWithin(one.value, one.sd, unit)}</td>
                 <td>
                   {!one.informed ? (
-                    <Badge tone="warn">not determined by these measurements</Badge>
+                    <Badge tone="warn">{say('not determined by these measurements')}</Badge>
                   ) : one.at_bound ? (
-                    <Badge tone="warn">at a bound</Badge>
+                    <Badge tone="warn">{say('at a bound')}</Badge>
                   ) : (
-                    <span className={styles.muted}>determined</span>
+                    <span className={styles.muted}>{say('determined')}</span>
                   )}
                 </td>
               </tr>

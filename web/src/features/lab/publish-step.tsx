@@ -11,6 +11,7 @@ import {
   type LabRunSummary,
   type ModelVersion,
 } from '@/api';
+import { say, Sentence } from '@/language';
 import { AskDialog, Badge, Button, Card, Field, Notice, Skeleton } from '@/ui';
 import { formatClock, formatFigure } from '@/units';
 import { addedEffects } from './add-step';
@@ -30,9 +31,9 @@ interface Props {
 export function candidateText(run: LabRun): string {
   const error = run.fit?.held_out_rmse ?? run.diagnosis?.steps.at(-1)?.held_out_rmse;
   const what = run.diagnosis
-    ? joined(run.diagnosis.effects.map(({ id }) => effectName(id))) || 'refitted'
-    : addedEffects(run);
-  return `${what}: ${formatFigure(error, primaryUnit(run))} on held-out trials`;
+    ? joined(run.diagnosis.effects.map(({ id }) => effectName(id))) || say('refitted')
+    : addedEffects(run) || say('no effect added');
+  return say('{effects}: {error} on held-out trials', { effects: what, error: formatFigure(error, primaryUnit(run)) });
 }
 
 function Candidate({
@@ -52,10 +53,12 @@ function Candidate({
       <span className={styles.choiceText}>
         <span className={styles.choiceName}>
           {run ? candidateText(run) : <Skeleton width="60%" />}{' '}
-          {summary.version === null ? null : <Badge tone="good">published</Badge>}{' '}
-          {run && isNotBetter(run) ? <Badge tone="warn">not better than the old model</Badge> : null}
+          {summary.version === null ? null : <Badge tone="good">{say('published')}</Badge>}{' '}
+          {run && isNotBetter(run) ? <Badge tone="warn">{say('not better than the old model')}</Badge> : null}
         </span>
-        <span className={styles.muted}>{summary.kind === 'fit' ? 'fitted manually' : 'found by the search'}</span>
+        <span className={styles.muted}>
+          {summary.kind === 'fit' ? say('fitted manually') : say('found by the search')}
+        </span>
       </span>
       <span className={styles.muted}>{formatClock(summary.made_utc_us)}</span>
     </label>
@@ -72,22 +75,33 @@ function Published({
   readonly set: string;
 }) {
   return (
-    <Card title="Published">
+    <Card title={say('Published')}>
       <div className={styles.stack} data-part="published">
         <p>
-          The version is in the list and cannot be changed. It is based on <strong>{base.name}</strong>.
+          <Sentence
+            text="The version is in the list and cannot be changed. It is based on <strong>{model}</strong>."
+            values={{ model: base.name }}
+            parts={{ strong: (words) => <strong>{words}</strong> }}
+          />
         </p>
         <p className={styles.buttons}>
           <Link href={`/lab/versions?a=${base.id}&b=${version}&set=${set}`} className={styles.solidLink}>
-            Compare old and new version
+            {say('Compare old and new version')}
           </Link>
-          <Link href={workAddress(version, set)}>Continue with the new version</Link>
+          <Link href={workAddress(version, set)}>{say('Continue with the new version')}</Link>
         </p>
         <p className={styles.muted}>
-          <a href={modelAddress(version)} download={`${base.name}.model.json`}>
-            Download the file
-          </a>{' '}
-          to use it with <code>tractus</code> or at a station.
+          <Sentence
+            text="<link>Download the file</link> to use it with <code>tractus</code> or at a station."
+            parts={{
+              link: (words) => (
+                <a href={modelAddress(version)} download={`${base.name}.model.json`}>
+                  {words}
+                </a>
+              ),
+              code: (words) => <code>{words}</code>,
+            }}
+          />
         </p>
       </div>
     </Card>
@@ -112,16 +126,21 @@ export function PublishStep({ model, set, versions }: Props) {
   });
   if (list.isError)
     return (
-      <Notice tone="bad" title="The candidates could not be loaded." onRetry={() => void list.refetch()}>
+      <Notice tone="bad" title={say('The candidates could not be loaded.')} onRetry={() => void list.refetch()}>
         {list.error.message}
       </Notice>
     );
   if (list.isPending) return <Skeleton height="240px" />;
   if (!summary)
     return (
-      <Notice title="No better model yet.">
-        <Link href={workAddress(model.id, set, 'missing')}>Find missing effects</Link> or{' '}
-        <Link href={workAddress(model.id, set, 'add')}>add effects manually</Link>, then publish the result here.
+      <Notice title={say('No better model yet.')}>
+        <Sentence
+          text="<missing>Find missing effects</missing> or <add>add effects manually</add>, then publish the result here."
+          parts={{
+            missing: (words) => <Link href={workAddress(model.id, set, 'missing')}>{words}</Link>,
+            add: (words) => <Link href={workAddress(model.id, set, 'add')}>{words}</Link>,
+          }}
+        />
       </Notice>
     );
   const version = summary.version ?? (made.data && made.variables === undefined ? made.data.id : null);
@@ -132,10 +151,10 @@ export function PublishStep({ model, set, versions }: Props) {
   };
   return (
     <>
-      <Card title="Publish a model version">
+      <Card title={say('Publish a model version')}>
         <form className={styles.stack} onSubmit={submit}>
           <fieldset className={styles.choices}>
-            <legend className="hidden-visually">Candidate</legend>
+            <legend className="hidden-visually">{say('Candidate')}</legend>
             {ready.map((one, i) => (
               <Candidate
                 key={one.id}
@@ -153,30 +172,30 @@ export function PublishStep({ model, set, versions }: Props) {
             <>
               <div className={styles.names}>
                 <Field
-                  label="Name"
+                  label={say('Name')}
                   value={name}
                   maxLength={200}
                   required
                   onChange={(event) => setName(event.target.value)}
                 />
                 <Field
-                  label="Note"
+                  label={say('Note')}
                   value={note ?? (run ? candidateText(run) : '')}
                   maxLength={500}
                   onChange={(event) => setNote(event.target.value)}
                 />
               </div>
               {made.isError ? (
-                <Notice tone="bad" title="The model was not published.">
+                <Notice tone="bad" title={say('The model was not published.')}>
                   {made.error.message}
                 </Notice>
               ) : null}
               <div className={styles.go}>
                 <a href={betterModelAddress(summary.id)} download={`${name}.model.json`}>
-                  Download without publishing
+                  {say('Download without publishing')}
                 </a>
                 <Button look="solid" type="submit" disabled={made.isPending || name.trim() === ''}>
-                  {made.isPending ? 'Publishing…' : 'Publish'}
+                  {made.isPending ? say('Publishing…') : say('Publish')}
                 </Button>
               </div>
             </>
@@ -185,14 +204,16 @@ export function PublishStep({ model, set, versions }: Props) {
       </Card>
       {asking && run ? (
         <AskDialog
-          title="Publish a model that is not better?"
-          action="Publish it anyway"
+          title={say('Publish a model that is not better?')}
+          action={say('Publish it anyway')}
           onClose={() => setAsking(false)}
           onAction={() => made.mutateAsync()}
         >
           <p>
-            On trials that the fit did not see, its error is not smaller than that of the model it came from (
-            {candidateText(run)}).
+            {say(
+              'On trials that the fit did not see, its error is not smaller than that of the model it came from ({candidate}).',
+              { candidate: candidateText(run) },
+            )}
           </p>
         </AskDialog>
       ) : null}

@@ -1,6 +1,7 @@
 import { useState } from 'react';
 import { Link } from 'wouter';
 import type { Effect, Ranked } from '@/api';
+import { marked, say } from '@/language';
 import { Badge, Bar, Button, DataTable, Term } from '@/ui';
 import { formatFigure, formatShare, share } from '@/units';
 import { kHeldOutMeaning } from './error-steps';
@@ -38,25 +39,25 @@ export function Ranking({ ranking, effects, unit, without, addressToTry }: Props
   };
   return (
     <DataTable<Ranked>
-      caption="Effects"
-      order="the most probable first"
+      caption={say('Effects')}
+      order={say('the most probable first')}
       className={styles.ranking}
       rows={ranking}
       keyOf={({ id }) => id}
-      empty="No effects."
+      empty={say('No effects.')}
       pageSize={all ? ranking.length : kFew}
       below={
         ranking.length > kFew ? (
           <p>
             <Button look="quiet" onClick={() => setAll(!all)}>
-              {all ? 'Show only the first six' : `Show all ${ranking.length}`}
+              {all ? say('Show only the first six') : say('Show all {count}', { count: ranking.length })}
             </Button>
           </p>
         ) : null
       }
       columns={[
         {
-          name: 'Effect and equation',
+          name: marked('Effect and equation'),
           by: ({ id }) => effectName(id),
           cell: (ranked) => (
             <>
@@ -66,20 +67,28 @@ export function Ranking({ ranking, effects, unit, without, addressToTry }: Props
           ),
         },
         {
-          name: 'Kind',
-          by: (ranked) => kindOf(ranked)?.label ?? 'custom',
+          name: marked('Kind'),
+          by: (ranked) => say(kindOf(ranked)?.label ?? 'custom'),
           cell: (ranked) => {
             const kind = kindOf(ranked);
-            return kind ? <Term definition={kind.description}>{kind.label}</Term> : <Badge>custom</Badge>;
+            return kind ? (
+              <Term definition={say(kind.description)}>{say(kind.label)}</Term>
+            ) : (
+              <Badge>{say('custom')}</Badge>
+            );
           },
         },
         {
           name: (
-            <Term definition="Probability that exactly this effect is missing, computed from the error on held-out trials. Of the answers given with 80 %, about 80 % are correct.">
-              Probability
+            <Term
+              definition={say(
+                'Probability that exactly this effect is missing, computed from the error on held-out trials. Of the answers given with 80 %, about 80 % are correct.',
+              )}
+            >
+              {say('Probability')}
             </Term>
           ),
-          title: 'Probability',
+          title: marked('Probability'),
           by: ({ probability }) => probability,
           cell: ({ probability }) => (
             <span className={styles.bar}>
@@ -90,15 +99,15 @@ export function Ranking({ ranking, effects, unit, without, addressToTry }: Props
         },
         {
           name: (
-            <Term align="end" definition={kHeldOutMeaning}>
-              Held-out error with this effect
+            <Term align="end" definition={say(kHeldOutMeaning)}>
+              {say('Held-out error with this effect')}
             </Term>
           ),
-          title: 'Held-out error with this effect',
+          title: marked('Held-out error with this effect'),
           by: ({ held_out_rmse }) => held_out_rmse,
           cell: ({ held_out_rmse, note }) =>
             held_out_rmse === null ? (
-              <span className={styles.muted}>{note === '' ? 'not tested' : note}</span>
+              <span className={styles.muted}>{note === '' ? say('not tested') : note}</span>
             ) : (
               <span className={styles.bar}>
                 <Bar share={held_out_rmse / worst} tone="bad" />
@@ -112,22 +121,24 @@ export function Ranking({ ranking, effects, unit, without, addressToTry }: Props
                 name: (
                   <Term
                     align="end"
-                    definition="The smallest value at which these measurements would have shown the effect, computed from the fitted model and its residual."
+                    definition={say(
+                      'The smallest value at which these measurements would have shown the effect, computed from the fitted model and its residual.',
+                    )}
                   >
-                    Detectable from
+                    {say('Detectable from')}
                   </Term>
                 ),
-                title: 'Detectable from',
+                title: marked('Detectable from'),
                 cell: ({ detection_limits }: Ranked) => detection_limits.map(({ text }) => text).join(', '),
               },
             ]
           : []),
         {
-          name: <span className="hidden-visually">Actions</span>,
+          name: <span className="hidden-visually">{say('Actions')}</span>,
           number: true,
           cell: ({ id }) => (
-            <Link href={addressToTry(id)} aria-label={`Try: ${effectName(id)}`}>
-              Try
+            <Link href={addressToTry(id)} aria-label={say('Try: {effect}', { effect: effectName(id) })}>
+              {say('Try')}
             </Link>
           ),
         },

@@ -1,5 +1,6 @@
 import { useMutation, useQueryClient } from '@tanstack/react-query';
 import { stopLabRun, type LabRunSummary } from '@/api';
+import { say } from '@/language';
 import { Button, Notice, Progress } from '@/ui';
 import { formatShare } from '@/units';
 import styles from './run-state.module.css';
@@ -19,30 +20,36 @@ export function RunState({ run, what, again }: Props) {
   });
   if (run.state === 'failed')
     return (
-      <Notice tone="bad" title={`${what} failed.`} onRetry={again}>
+      <Notice tone="bad" title={say('{what} failed.', { what })} onRetry={again}>
         {run.error}
       </Notice>
     );
   if (run.state === 'cancelled')
     return (
-      <Notice tone="warn" title={`${what} was cancelled.`} onRetry={again}>
-        Nothing was changed.
+      <Notice tone="warn" title={say('{what} was cancelled.', { what })} onRetry={again}>
+        {say('Nothing was changed.')}
       </Notice>
     );
   const waiting = run.state === 'queued';
   return (
     <div className={styles.state} role="status" data-part="run-state">
       <div className={styles.text}>
-        <strong>{waiting ? `${what}: queued` : `${what}: ${formatShare(run.share)}`}</strong>
+        <strong>{waiting ? say('{what}: queued', { what }) : `${what}: ${formatShare(run.share)}`}</strong>
         <span className={styles.phase}>
-          {run.phase === '' ? (waiting ? 'The lab runs one job at a time.' : 'Reading the measurements.') : run.phase}
+          {run.phase === ''
+            ? waiting
+              ? say('The lab runs one job at a time.')
+              : say('Reading the measurements.')
+            : run.phase}
         </span>
       </div>
       <Progress done={run.share} of={1} label={what} />
       <Button onClick={() => stopped.mutate()} disabled={stopped.isPending}>
-        {stopped.isPending ? 'Stopping…' : 'Cancel'}
+        {stopped.isPending ? say('Stopping…') : say('Cancel')}
       </Button>
-      {stopped.isError ? <span role="alert">The job could not be stopped: {stopped.error.message}</span> : null}
+      {stopped.isError ? (
+        <span role="alert">{say('The job could not be stopped: {message}', { message: stopped.error.message })}</span>
+      ) : null}
     </div>
   );
 }

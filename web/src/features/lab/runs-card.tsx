@@ -1,17 +1,18 @@
 import { useQuery } from '@tanstack/react-query';
 import { Link } from 'wouter';
 import { labRunsQuery, measurementsQuery, modelsQuery, type LabRunSummary } from '@/api';
+import { marked, say } from '@/language';
 import { Badge, Card, DataTable, Notice, Progress, type Tone } from '@/ui';
 import { formatDateTime, formatShare, isoDateTime } from '@/units';
 import styles from './lab.module.css';
 import { effectName, joined, kRunLabels, stepOfRun, workAddress } from './names';
 
 const kState: Record<LabRunSummary['state'], { label: string; tone: Tone }> = {
-  queued: { label: 'queued', tone: 'neutral' },
-  running: { label: 'running', tone: 'accent' },
-  done: { label: 'done', tone: 'good' },
-  failed: { label: 'failed', tone: 'bad' },
-  cancelled: { label: 'cancelled', tone: 'warn' },
+  queued: { label: marked('queued'), tone: 'neutral' },
+  running: { label: marked('running'), tone: 'accent' },
+  done: { label: marked('done'), tone: 'good' },
+  failed: { label: marked('failed'), tone: 'bad' },
+  cancelled: { label: marked('cancelled'), tone: 'warn' },
 };
 
 const addedTo = (run: LabRunSummary) =>
@@ -27,50 +28,56 @@ export function RunsCard() {
   const modelName = (id: string) => models?.find((one) => one.id === id)?.name ?? '–',
     setName = (id: string) => sets?.find((one) => one.id === id)?.name ?? '–';
   return (
-    <Card title="Recent runs">
+    <Card title={say('Recent runs')}>
       {runs.isError ? (
-        <Notice tone="bad" title="The list could not be loaded." onRetry={() => void runs.refetch()}>
+        <Notice tone="bad" title={say('The list could not be loaded.')} onRetry={() => void runs.refetch()}>
           {runs.error.message}
         </Notice>
       ) : null}
       {runs.isError && !runs.data ? null : (
         <DataTable<LabRunSummary>
-          caption="Runs"
-          order="newest first"
+          caption={say('Runs')}
+          order={say('newest first')}
           rows={runs.data?.runs}
           keyOf={({ id }) => id}
-          empty="No runs yet. Select measurements and a model above."
+          empty={say('No runs yet. Select measurements and a model above.')}
           pageSize={20}
           columns={[
             {
-              name: 'Run',
-              by: (run) => kRunLabels[run.kind],
+              name: marked('Run'),
+              by: (run) => say(kRunLabels[run.kind]),
               cell: (run) => (
                 <>
                   <Link href={workAddress(run.model, run.measurements, stepOfRun[run.kind])} className={styles.strong}>
-                    {kRunLabels[run.kind]}
+                    {say(kRunLabels[run.kind])}
                   </Link>
-                  {addedTo(run).length > 0 ? <span className={styles.muted}> with {joined(addedTo(run))}</span> : null}
+                  {addedTo(run).length > 0 ? (
+                    <span className={styles.muted}>{say('with {effects}', { effects: joined(addedTo(run)) })}</span>
+                  ) : null}
                 </>
               ),
             },
-            { name: 'Model', by: (run) => modelName(run.model), cell: (run) => modelName(run.model) },
-            { name: 'Measurements', by: (run) => setName(run.measurements), cell: (run) => setName(run.measurements) },
+            { name: marked('Model'), by: (run) => modelName(run.model), cell: (run) => modelName(run.model) },
             {
-              name: 'State',
-              by: (run) => kState[run.state].label,
+              name: marked('Measurements'),
+              by: (run) => setName(run.measurements),
+              cell: (run) => setName(run.measurements),
+            },
+            {
+              name: marked('State'),
+              by: (run) => say(kState[run.state].label),
               cell: (run) =>
                 run.state === 'running' ? (
                   <span className={styles.going}>
-                    <Progress done={run.share} of={1} label="Progress" />
+                    <Progress done={run.share} of={1} label={say('Progress')} />
                     <span>{formatShare(run.share)}</span>
                   </span>
                 ) : (
-                  <Badge tone={kState[run.state].tone}>{kState[run.state].label}</Badge>
+                  <Badge tone={kState[run.state].tone}>{say(kState[run.state].label)}</Badge>
                 ),
             },
             {
-              name: 'Started',
+              name: marked('Started'),
               by: (run) => run.made_utc_us,
               cell: (run) => (
                 <>

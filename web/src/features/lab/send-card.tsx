@@ -1,6 +1,7 @@
 import { useMutation, useQuery, useQueryClient } from '@tanstack/react-query';
 import { useState, type FormEvent } from 'react';
 import { recallModel, sendModel, sentModelQuery, type ModelVersion, type SentModel } from '@/api';
+import { say, Sentence } from '@/language';
 import { AskDialog, Badge, Button, Card, Notice, Skeleton } from '@/ui';
 import { formatDateTime } from '@/units';
 import styles from './lab.module.css';
@@ -20,17 +21,25 @@ function SentStations({
       {sent.map((one) => (
         <li key={one.id}>
           <strong>{one.name}</strong>{' '}
-          {one.state === 'there' ? <Badge tone="good">received</Badge> : <Badge tone="accent">pending</Badge>}
+          {one.state === 'there' ? (
+            <Badge tone="good">{say('received')}</Badge>
+          ) : (
+            <Badge tone="accent">{say('pending')}</Badge>
+          )}
           <span className={styles.muted}>
             {' '}
             {one.there_utc_us !== null
               ? formatDateTime(one.there_utc_us)
               : one.asked_utc_us === null
                 ? ''
-                : `sent ${formatDateTime(one.asked_utc_us)} by ${one.asked_by}`}
+                : say('sent {time} by {name}', { time: formatDateTime(one.asked_utc_us), name: one.asked_by })}
           </span>{' '}
-          <Button look="quiet" label={`Recall from ${one.name}`} onClick={() => onRecall(one)}>
-            Recall…
+          <Button
+            look="quiet"
+            label={say('Recall from {station}', { station: one.name })}
+            onClick={() => onRecall(one)}
+          >
+            {say('Recall…')}
           </Button>
         </li>
       ))}
@@ -61,28 +70,30 @@ export function SendCard({ version }: { readonly version: Pick<ModelVersion, 'id
     if (picked.length > 0) made.mutate(picked);
   };
   return (
-    <Card title="Send to stations">
+    <Card title={say('Send to stations')}>
       <div className={styles.stack}>
         <p className={styles.readable}>
-          A station downloads the version when it next connects to the server. Then it can be started with this version:{' '}
-          <code>tractus-station --model &quot;{version.name}&quot;</code>. The station uses the same file that the lab
-          compared.
+          <Sentence
+            text="A station downloads the version when it next connects to the server. Then it can be started with this version: <code>{command}</code>. The station uses the same file that the lab compared."
+            values={{ command: `tractus-station --model "${version.name}"` }}
+            parts={{ code: (words) => <code>{words}</code> }}
+          />
         </p>
         {sent.isError ? (
-          <Notice tone="bad" title="The stations could not be loaded." onRetry={() => void sent.refetch()}>
+          <Notice tone="bad" title={say('The stations could not be loaded.')} onRetry={() => void sent.refetch()}>
             {sent.error.message}
           </Notice>
         ) : null}
         {sent.isPending ? <Skeleton height="28px" width="320px" /> : <SentStations sent={there} onRecall={setDialog} />}
         {made.isError ? (
-          <Notice tone="bad" title="The version was not sent.">
+          <Notice tone="bad" title={say('The version was not sent.')}>
             {made.error.message}
           </Notice>
         ) : null}
         {asking && open.length > 0 ? (
           <form className={styles.stack} onSubmit={submit}>
             <fieldset className={styles.picks}>
-              <legend>Stations</legend>
+              <legend>{say('Stations')}</legend>
               {open.map(({ id, name }) => (
                 <label key={id}>
                   <input
@@ -98,50 +109,55 @@ export function SendCard({ version }: { readonly version: Pick<ModelVersion, 'id
             </fieldset>
             <p className={styles.buttons}>
               <Button look="solid" type="submit" disabled={made.isPending || picked.length === 0}>
-                {made.isPending ? 'Sending…' : 'Send'}
+                {made.isPending ? say('Sending…') : say('Send')}
               </Button>{' '}
-              <Button onClick={() => setAsking(false)}>Cancel</Button>
+              <Button onClick={() => setAsking(false)}>{say('Cancel')}</Button>
             </p>
           </form>
         ) : (
           <p className={styles.buttons} hidden={open.length === 0}>
             <Button look="solid" onClick={() => setDialog('send')} disabled={made.isPending || sent.isPending}>
-              {made.isPending ? 'Sending…' : 'Send to all stations…'}
+              {made.isPending ? say('Sending…') : say('Send to all stations…')}
             </Button>
             <Button onClick={() => setAsking(true)} disabled={made.isPending}>
-              Choose stations…
+              {say('Choose stations…')}
             </Button>
           </p>
         )}
         {sent.data && open.length === 0 ? (
           <p className={styles.muted}>
-            {all.length === 0 ? 'No stations are enrolled yet.' : 'The version was sent to all stations.'}
+            {all.length === 0 ? say('No stations are enrolled yet.') : say('The version was sent to all stations.')}
           </p>
         ) : null}
       </div>
       {dialog === 'send' ? (
         <AskDialog
-          title={`Send “${version.name}” to ${open.length === 1 ? 'one station' : `${open.length} stations`}?`}
-          action="Send"
+          title={say('Send “{model}” to {count, plural, one {one station} other {# stations}}?', {
+            model: version.name,
+            count: open.length,
+          })}
+          action={say('Send')}
           onClose={() => setDialog(null)}
           onAction={() => made.mutateAsync(null)}
         >
           <p>
-            {open.map(({ name }) => name).join(', ')}: trials can be started with this version from then on. It can be
-            recalled.
+            {say('{stations}: trials can be started with this version from then on. It can be recalled.', {
+              stations: open.map(({ name }) => name).join(', '),
+            })}
           </p>
         </AskDialog>
       ) : null}
       {dialog !== null && dialog !== 'send' ? (
         <AskDialog
-          title={`Recall “${version.name}” from ${dialog.name}?`}
-          action="Recall"
+          title={say('Recall “{model}” from {station}?', { model: version.name, station: dialog.name })}
+          action={say('Recall')}
           onClose={() => setDialog(null)}
           onAction={() => recallModel(version.id, dialog.id).then(store)}
         >
           <p>
-            The station forgets the version when it next connects to the server. Trials that were done with it stay as
-            they are.
+            {say(
+              'The station forgets the version when it next connects to the server. Trials that were done with it stay as they are.',
+            )}
           </p>
         </AskDialog>
       ) : null}

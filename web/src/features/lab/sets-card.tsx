@@ -1,5 +1,6 @@
 import { useMutation, useQuery, useQueryClient } from '@tanstack/react-query';
 import { addMeasurements, measurementsQuery, type MeasurementSet } from '@/api';
+import { say, Sentence } from '@/language';
 import { Badge, Card, DropZone, Notice, Term, type Dropped } from '@/ui';
 import { formatCount, formatDateTime, isoDateTime } from '@/units';
 import styles from './lab.module.css';
@@ -15,15 +16,15 @@ interface Props {
 function Problems({ message }: { readonly message: string }) {
   const problems = problemsOf(message);
   return (
-    <Notice tone="bad" title="The measurements were not added.">
+    <Notice tone="bad" title={say('The measurements were not added.')}>
       <table className={styles.problems}>
         <thead>
           <tr>
-            <th scope="col">File</th>
+            <th scope="col">{say('File')}</th>
             <th scope="col" className={styles.number}>
-              Line
+              {say('Line')}
             </th>
-            <th scope="col">Error</th>
+            <th scope="col">{say('Error')}</th>
           </tr>
         </thead>
         <tbody>
@@ -54,7 +55,7 @@ function SetRow({
       <input type="radio" name="set" checked={chosen} onChange={choose} />
       <span className={styles.choiceText}>
         <span className={styles.choiceName}>
-          {set.name} {set.simulated === true ? <Badge tone="warn">simulated</Badge> : null}
+          {set.name} {set.simulated === true ? <Badge tone="warn">{say('simulated')}</Badge> : null}
         </span>
         <span className={styles.muted}>{setFacts(set)}</span>
       </span>
@@ -80,34 +81,46 @@ export function SetsCard({ chosen, choose }: Props) {
   });
   const sets = query.data?.measurements;
   return (
-    <Card title="1 · Measurements">
+    <Card title={say('1 · Measurements')}>
       <div className={styles.stack}>
         <DropZone
-          label="New measurements"
-          folder="A folder with set.json"
-          files="A zip file, or set.json with its CSV files"
-          choose="Choose zip file"
+          label={say('New measurements')}
+          folder={say('A folder with set.json')}
+          files={say('A zip file, or set.json with its CSV files')}
+          choose={say('Choose zip file')}
           onFiles={(files) => sent.mutate(files)}
-          busy={sent.isPending ? 'Packing, uploading and checking the files…' : null}
+          busy={sent.isPending ? say('Packing, uploading and checking the files…') : null}
         >
-          Drop a folder or a zip file here: <code>set.json</code> and one CSV file per trial, in the format{' '}
-          <Term definition="File format for measurements: set.json names the rig and the trials; each CSV file has a header whose column names end in SI units, such as t_s, x_m, fz_N.">
-            tractus-measurements/1
-          </Term>
-          .
+          <Sentence
+            text="Drop a folder or a zip file here: <code>set.json</code> and one CSV file per trial, in the format <term>tractus-measurements/1</term>."
+            parts={{
+              code: (words) => <code>{words}</code>,
+              term: (words) => (
+                <Term
+                  definition={say(
+                    'File format for measurements: set.json names the rig and the trials; each CSV file has a header whose column names end in SI units, such as t_s, x_m, fz_N.',
+                  )}
+                >
+                  {words}
+                </Term>
+              ),
+            }}
+          />
         </DropZone>
         {sent.isError ? <Problems message={sent.error.message} /> : null}
         {query.isError ? (
-          <Notice tone="bad" title="The list could not be loaded." onRetry={() => void query.refetch()}>
+          <Notice tone="bad" title={say('The list could not be loaded.')} onRetry={() => void query.refetch()}>
             {query.error.message}
           </Notice>
         ) : null}
         <fieldset className={styles.choices}>
-          <legend className="hidden-visually">Measurement sets, newest first</legend>
+          <legend className="hidden-visually">{say('Measurement sets, newest first')}</legend>
           {sets?.map((set) => (
             <SetRow key={set.id} set={set} chosen={set.id === chosen} choose={() => choose(set.id)} />
           ))}
-          {sets?.length === 0 ? <p className={styles.muted}>No measurements yet. Add the first set above.</p> : null}
+          {sets?.length === 0 ? (
+            <p className={styles.muted}>{say('No measurements yet. Add the first set above.')}</p>
+          ) : null}
         </fieldset>
       </div>
     </Card>

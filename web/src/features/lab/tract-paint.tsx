@@ -1,6 +1,7 @@
 import { useState } from 'react';
 import type { TractMap } from '@/api';
 import { PaintedTract, PaintedWall } from '@/charts';
+import { say, Sentence } from '@/language';
 import { Notice } from '@/ui';
 import { formatAngle, formatFigure, formatLength, metre, radian } from '@/units';
 import styles from './lab.module.css';
@@ -13,13 +14,19 @@ export function TractPaint({ map, unit }: { readonly map: TractMap | null; reado
   const [pointed, setPointed] = useState('');
   if (!map)
     return (
-      <Notice title="The positions of the samples in the tract are unknown.">
-        If set.json states the tract (<code>&quot;tract&quot;</code> with <code>entry_m</code>, <code>axis</code>,{' '}
-        <code>length_m</code>), the error is shown on its wall here.
+      <Notice title={say('The positions of the samples in the tract are unknown.')}>
+        <Sentence
+          text="If set.json states the tract (<code>tract</code> with <code>entry_m</code>, <code>axis</code>, <code>length_m</code>), the error is shown on its wall here."
+          parts={{ code: (words) => <code>{words}</code> }}
+        />
       </Notice>
     );
   const describe = (depth: number, angle: number, value: number | null) =>
-    `Depth ${formatLength(metre(depth))}, angle ${formatAngle(radian(angle))}: ${value === null ? 'not touched' : formatFigure(value, unit)}`;
+    say('Depth {depth}, angle {angle}: {error}', {
+      depth: formatLength(metre(depth)),
+      angle: formatAngle(radian(angle)),
+      error: value === null ? say('not touched') : formatFigure(value, unit),
+    });
   return (
     <div className={styles.stack}>
       <div className={styles.walls}>
@@ -35,12 +42,12 @@ export function TractPaint({ map, unit }: { readonly map: TractMap | null; reado
           angle_rad={map.angle_rad}
           values={map.rmse}
           radius_m={kDrawn_m}
-          summary="Wall of the tract, coloured by the error. The unrolled map shows the same values."
+          summary={say('Wall of the tract, coloured by the error. The unrolled map shows the same values.')}
         />
       </div>
       <p className={styles.muted} role="status">
         {pointed === ''
-          ? 'Point at the unrolled wall to read the error. Angles are measured about the axis of the tract.'
+          ? say('Point at the unrolled wall to read the error. Angles are measured about the axis of the tract.')
           : pointed}
       </p>
     </div>

@@ -1,5 +1,6 @@
 /** The verdict of a diagnosis in the server's words, and how it is shown. */
 import type { Diagnosis, LabRun } from '@/api';
+import { marked, say } from '@/language';
 import { formatShare, share } from '@/units';
 
 export interface Verdict {
@@ -11,17 +12,18 @@ export interface Verdict {
 const kTones = { complete: 'good', missing: 'accent', partly: 'warn', unexplained: 'bad' } as const;
 /** Of results from before the server wrote sentences. */
 const kHeadlines = {
-  complete: 'No effect is missing.',
-  missing: 'An effect is missing.',
-  partly: 'Effects are missing; those found explain a part.',
-  unexplained: 'A missing effect is not in the catalogue.',
+  complete: marked('No effect is missing.'),
+  missing: marked('An effect is missing.'),
+  partly: marked('Effects are missing; those found explain a part.'),
+  unexplained: marked('A missing effect is not in the catalogue.'),
 };
 
 export function verdictOf({ verdict, headline, detail, probability }: Diagnosis): Verdict {
-  const certainty = probability === null ? '' : `Probability of this answer: ${formatShare(share(probability))}.`;
+  const certainty =
+    probability === null ? '' : say('Probability of this answer: {share}.', { share: formatShare(share(probability)) });
   return {
     tone: kTones[verdict],
-    headline: headline || kHeadlines[verdict],
+    headline: headline || say(kHeadlines[verdict]),
     detail: [detail, certainty].filter(Boolean).join(' '),
   };
 }

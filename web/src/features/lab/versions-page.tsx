@@ -9,6 +9,7 @@ import {
   type MeasurementSet,
   type ModelVersion,
 } from '@/api';
+import { say } from '@/language';
 import { Badge, Button, Card, Notice, Scroll, Select, Skeleton, useTitle } from '@/ui';
 import { formatDateTime, formatFigure, isoDateTime, kNone } from '@/units';
 import { Channels, Headline } from './comparison-parts';
@@ -44,9 +45,9 @@ function Node({
       <div className={styles.version} data-chosen={model.id === picked.a || model.id === picked.b || undefined}>
         <span className={styles.choiceText}>
           <span className={styles.choiceName}>
-            {model.name} {model.parent === null ? null : <Badge tone="accent">derived</Badge>}
+            {model.name} {model.parent === null ? null : <Badge tone="accent">{say('derived')}</Badge>}
           </span>
-          <span className={styles.muted}>{[model.rig, model.note].filter(Boolean).join(' · ')}</span>
+          <span className={styles.muted}>{[say(model.rig), model.note].filter(Boolean).join(' · ')}</span>
         </span>
         <span className={styles.muted}>
           <time dateTime={isoDateTime(model.made_utc_us)}>{formatDateTime(model.made_utc_us)}</time>, {model.made_by}
@@ -54,20 +55,30 @@ function Node({
         <span className={styles.buttons}>
           <Button
             pressed={model.id === picked.a}
-            label={`Old: ${model.name}, ${formatDateTime(model.made_utc_us)}`}
+            label={say('Old: {model}, {time}', {
+              model: model.name,
+              time: formatDateTime(model.made_utc_us),
+            })}
             onClick={() => pick({ a: model.id })}
           >
-            Old
+            {say('Old')}
           </Button>
           <Button
             pressed={model.id === picked.b}
-            label={`New: ${model.name}, ${formatDateTime(model.made_utc_us)}`}
+            label={say('New: {model}, {time}', {
+              model: model.name,
+              time: formatDateTime(model.made_utc_us),
+            })}
             onClick={() => pick({ b: model.id })}
           >
-            New
+            {say('New')}
           </Button>
-          <a href={modelAddress(model.id)} download={`${model.name}.model.json`} aria-label={`Download ${model.name}`}>
-            Download
+          <a
+            href={modelAddress(model.id)}
+            download={`${model.name}.model.json`}
+            aria-label={say('Download {name}', { name: model.name })}
+          >
+            {say('Download')}
           </a>
         </span>
       </div>
@@ -88,25 +99,25 @@ function ParameterDifferences({ a, b }: { readonly a: ModelVersion; readonly b: 
   const failed = old.error ?? now.error;
   if (failed)
     return (
-      <Notice tone="bad" title="The files could not be loaded.">
+      <Notice tone="bad" title={say('The files could not be loaded.')}>
         {failed.message}
       </Notice>
     );
   if (!old.data || !now.data) return <Skeleton height="160px" />;
   const rows = differences(old.data, now.data);
-  if (rows.length === 0) return <p>All parameters are the same.</p>;
+  if (rows.length === 0) return <p>{say('All parameters are the same.')}</p>;
   return (
-    <Scroll label="Parameters that differ">
+    <Scroll label={say('Parameters that differ')}>
       <table className={styles.table}>
-        <caption className="hidden-visually">Parameters that differ</caption>
+        <caption className="hidden-visually">{say('Parameters that differ')}</caption>
         <thead>
           <tr>
-            <th scope="col">Parameter</th>
+            <th scope="col">{say('Parameter')}</th>
             <th scope="col" className={styles.number}>
-              Old
+              {say('Old')}
             </th>
             <th scope="col" className={styles.number}>
-              New
+              {say('New')}
             </th>
           </tr>
         </thead>
@@ -119,9 +130,9 @@ function ParameterDifferences({ a, b }: { readonly a: ModelVersion; readonly b: 
                 <th scope="row">
                   {name}{' '}
                   {row.a === null ? (
-                    <Badge tone="accent">new</Badge>
+                    <Badge tone="accent">{say('new')}</Badge>
                   ) : row.b === null ? (
-                    <Badge tone="warn">removed</Badge>
+                    <Badge tone="warn">{say('removed')}</Badge>
                   ) : null}
                 </th>
                 <td className={styles.number}>{cell(row.a)}</td>
@@ -147,13 +158,13 @@ function VersionComparison({
   const { run, error, begin, retry } = useComparison(a.id, set.id, b.id);
   if (error)
     return (
-      <Notice tone="bad" title="The comparison could not be made." onRetry={retry}>
+      <Notice tone="bad" title={say('The comparison could not be made.')} onRetry={retry}>
         {error.message}
       </Notice>
     );
   if (!run) return <Skeleton height="480px" />;
-  if (!run.comparisons) return <RunState run={run} what="The comparison" again={begin} />;
-  const names = { before: 'old', after: 'new' };
+  if (!run.comparisons) return <RunState run={run} what={say('The comparison')} again={begin} />;
+  const names = { before: say('old'), after: say('new') };
   return (
     <div className={styles.stack}>
       <Headline {...run.comparisons} names={names} />
@@ -165,7 +176,7 @@ function VersionComparison({
 
 /** The tree of model versions, and the comparison of any two of them. */
 export function VersionsPage() {
-  useTitle('Model versions');
+  useTitle(say('Model versions'));
   const search = new URLSearchParams(useSearch());
   const [, go] = useLocation();
   const models = useQuery(modelsQuery),
@@ -188,26 +199,27 @@ export function VersionsPage() {
   return (
     <div className={styles.page}>
       <p className={styles.back}>
-        <Link href="/lab">← Model lab</Link>
+        <Link href="/lab">{say('← Model lab')}</Link>
       </p>
       <div>
-        <h1>Model versions</h1>
+        <h1>{say('Model versions')}</h1>
         <p className={styles.lead}>
-          Versions cannot be changed. Each version is listed below the version that it is based on. Choose an old and a
-          new version to compare them.
+          {say(
+            'Versions cannot be changed. Each version is listed below the version that it is based on. Choose an old and a new version to compare them.',
+          )}
         </p>
       </div>
       {models.isError ? (
-        <Notice tone="bad" title="The versions could not be loaded." onRetry={() => void models.refetch()}>
+        <Notice tone="bad" title={say('The versions could not be loaded.')} onRetry={() => void models.refetch()}>
           {models.error.message}
         </Notice>
       ) : null}
-      <Card title="History">
+      <Card title={say('History')}>
         {models.isPending ? (
           <Skeleton height="160px" />
         ) : roots.length === 0 ? (
           <p className={styles.muted}>
-            No models yet. <Link href="/lab">Add the first one in the lab.</Link>
+            {say('No models yet.')} <Link href="/lab">{say('Add the first one in the lab.')}</Link>
           </p>
         ) : (
           <ul className={styles.tree} data-part="tree">
@@ -221,15 +233,15 @@ export function VersionsPage() {
       {a && b && a.id !== b.id ? (
         a.rig === b.rig ? (
           <>
-            <Card title="Parameters that differ">
+            <Card title={say('Parameters that differ')}>
               <ParameterDifferences a={a} b={b} />
             </Card>
             {set ? (
               <Card
-                title="Comparison with measurements"
+                title={say('Comparison with measurements')}
                 aside={
                   <Select
-                    label={<span className="hidden-visually">Measurements</span>}
+                    label={<span className="hidden-visually">{say('Measurements')}</span>}
                     value={set.id}
                     onChange={(event) => pick({ set: event.target.value })}
                     options={fitting.map((one) => ({ value: one.id, text: `${one.name} (${setFacts(one)})` }))}
@@ -241,8 +253,8 @@ export function VersionsPage() {
             ) : null}
           </>
         ) : (
-          <Notice tone="warn" title="These versions belong to different rigs.">
-            They cannot be compared with the same measurements.
+          <Notice tone="warn" title={say('These versions belong to different rigs.')}>
+            {say('They cannot be compared with the same measurements.')}
           </Notice>
         )
       ) : null}

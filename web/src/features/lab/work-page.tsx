@@ -2,6 +2,7 @@ import { useQuery } from '@tanstack/react-query';
 import { useEffect } from 'react';
 import { Link, useLocation, useSearch } from 'wouter';
 import { measurementsQuery, modelsQuery, type MeasurementSet, type ModelVersion } from '@/api';
+import { say, Sentence } from '@/language';
 import { Badge, Card, Notice, Skeleton, Steps, useTitle } from '@/ui';
 import { AddStep } from './add-step';
 import { CompareStep, type Drawable } from './compare-step';
@@ -40,7 +41,7 @@ function Compared({ model, set, versions, step }: Work & { readonly step: 'compa
   const { run, error, begin, retry } = useComparison(model.id, set.id, beside?.id ?? null);
   if (error)
     return (
-      <Notice tone="bad" title="The comparison could not be made." onRetry={retry}>
+      <Notice tone="bad" title={say('The comparison could not be made.')} onRetry={retry}>
         {error.message}
       </Notice>
     );
@@ -53,8 +54,8 @@ function Compared({ model, set, versions, step }: Work & { readonly step: 'compa
     );
   if (!run.comparisons)
     return (
-      <Card title="Comparing">
-        <RunState run={run} what="The comparison" again={begin} />
+      <Card title={say('Comparing')}>
+        <RunState run={run} what={say('The comparison')} again={begin} />
       </Card>
     );
   const drawable: Drawable = {
@@ -62,9 +63,13 @@ function Compared({ model, set, versions, step }: Work & { readonly step: 'compa
     ...run.comparisons,
     rig: model.rig,
     names: {
-      before: beside ? `${model.name} (first)` : 'model',
+      before: beside ? say('{model} (first)', { model: model.name }) : say('model'),
       after:
-        run.comparisons.after && beside ? (beside.name === model.name ? `${beside.name} (second)` : beside.name) : null,
+        run.comparisons.after && beside
+          ? beside.name === model.name
+            ? say('{model} (second)', { model: beside.name })
+            : beside.name
+          : null,
     },
   };
   return step === 'compare' ? (
@@ -114,15 +119,15 @@ export function WorkPage({
   const model = models.data?.models.find(({ id }) => id === modelId),
     set = sets.data?.measurements.find(({ id }) => id === setId);
   const step = kSteps.find(({ id }) => id === stepName)?.id ?? 'compare';
-  const name = kSteps.find(({ id }) => id === step)?.name ?? '';
-  useTitle(model ? `${name}: ${model.name}` : 'Model lab');
+  const name = say(kSteps.find(({ id }) => id === step)?.name ?? '');
+  useTitle(model ? `${name}: ${model.name}` : say('Model lab'));
   useEffect(() => {
     window.scrollTo({ top: 0 });
   }, [step]);
   const failed = models.error ?? sets.error;
   const back = (
     <p className={styles.back}>
-      <Link href="/lab">← Model lab</Link>
+      <Link href="/lab">{say('← Model lab')}</Link>
     </p>
   );
   if (failed)
@@ -131,7 +136,7 @@ export function WorkPage({
         {back}
         <Notice
           tone="bad"
-          title="The lab could not be loaded."
+          title={say('The lab could not be loaded.')}
           onRetry={() => {
             void models.refetch();
             void sets.refetch();
@@ -154,8 +159,8 @@ export function WorkPage({
     return (
       <div className={styles.page}>
         {back}
-        <Notice tone="warn" title={model ? 'Measurements not found.' : 'Model not found.'}>
-          Check the address. The data may be on another server.
+        <Notice tone="warn" title={model ? say('Measurements not found.') : say('Model not found.')}>
+          {say('Check the address. The data may be on another server.')}
         </Notice>
       </div>
     );
@@ -165,19 +170,23 @@ export function WorkPage({
       <div>
         <h1>{model.name}</h1>
         <p className={styles.against}>
-          compared with <strong>{set.name}</strong>{' '}
-          {set.simulated === true ? <Badge tone="warn">simulated measurements</Badge> : null}{' '}
+          <Sentence
+            text="compared with <strong>{set}</strong>"
+            values={{ set: set.name }}
+            parts={{ strong: (words) => <strong>{words}</strong> }}
+          />{' '}
+          {set.simulated === true ? <Badge tone="warn">{say('simulated measurements')}</Badge> : null}{' '}
           <span className={styles.muted}>
             {setFacts(set)}
-            {model.note === '' ? '' : ` · model: ${model.note}`}
+            {model.note === '' ? '' : ` · ${say('model: {note}', { note: model.note })}`}
           </span>
         </p>
       </div>
       <Steps
-        label="Steps"
+        label={say('Steps')}
         steps={kSteps.map(({ id, name: stepTitle }) => ({
           href: workAddress(model.id, set.id, id),
-          name: stepTitle,
+          name: say(stepTitle),
           current: id === step,
         }))}
       />

@@ -1,5 +1,6 @@
 /** Files that were dropped, as the one zip that the server takes. */
 import { zip, type AsyncZippable } from 'fflate';
+import { say } from '@/language';
 import type { Dropped } from '@/ui';
 
 export interface Packed {
@@ -50,27 +51,30 @@ async function statedName(set: File | undefined): Promise<string | undefined> {
 /** Errors: a sentence for the person who dropped them. */
 export async function pack(dropped: readonly Dropped[]): Promise<Packed> {
   const [only] = dropped;
-  if (!only) throw new Error('No files were selected.');
+  if (!only) throw new Error(say('No files were selected.'));
   if (dropped.length === 1 && /\.zip$/i.test(only.file.name)) {
-    if (only.file.size > kMost_bytes) throw new Error(`${only.file.name}: larger than the limit of 256 MiB.`);
+    if (only.file.size > kMost_bytes)
+      throw new Error(say('{name}: larger than the limit of 256 MiB.', { name: only.file.name }));
     return { name: only.file.name.replace(/\.zip$/i, ''), zip: new Uint8Array(await only.file.arrayBuffer()) };
   }
   const root = rootOf(dropped.map(({ path }) => path));
   if (root === null)
     throw new Error(
-      'set.json is missing. Choose a folder with set.json and one CSV file per trial, or a zip file of such a folder.',
+      say(
+        'set.json is missing. Choose a folder with set.json and one CSV file per trial, or a zip file of such a folder.',
+      ),
     );
   const inside = dropped
     .map(({ path, file }) => ({ path: withoutSlash(path), file }))
     .filter(({ path }) => path.startsWith(root) && !path.split('/').some((part) => part.startsWith('.')));
   const size = inside.reduce((sum, { file }) => sum + file.size, 0);
-  if (size > 4 * kMost_bytes) throw new Error('The folder is larger than the limit of 1 GiB.');
+  if (size > 4 * kMost_bytes) throw new Error(say('The folder is larger than the limit of 1 GiB.'));
   const stated = await statedName(inside.find(({ path }) => path === `${root}set.json`)?.file);
   const files: AsyncZippable = {};
   for (const { path, file } of inside) files[path.slice(root.length)] = new Uint8Array(await file.arrayBuffer());
   const data = await zipped(files);
-  if (data.length > kMost_bytes) throw new Error('The compressed folder is larger than the limit of 256 MiB.');
-  return { name: root.split('/').filter(Boolean).at(-1) ?? stated ?? 'Measurements', zip: data };
+  if (data.length > kMost_bytes) throw new Error(say('The compressed folder is larger than the limit of 256 MiB.'));
+  return { name: root.split('/').filter(Boolean).at(-1) ?? stated ?? say('Measurements'), zip: data };
 }
 
 /** One fault a line, "FILE:LINE: what is wrong", as the server writes them. */

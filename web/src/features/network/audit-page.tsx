@@ -1,5 +1,6 @@
 import { useMutation, useQuery } from '@tanstack/react-query';
 import { auditAsked, auditQuery, checkAudit, kRoles, useSavedViews, type AuditRow } from '@/api';
+import { marked, say } from '@/language';
 import { Button, Card, ListTable, Notice, Term, useList, type ListFilter } from '@/ui';
 import { formatClock, formatCount } from '@/units';
 import { Frame } from './frame';
@@ -25,21 +26,25 @@ function Check() {
     <div className={styles.stack}>
       <p className={styles.buttons}>
         <Button onClick={() => check.mutate()} disabled={check.isPending}>
-          {check.isPending ? 'Verifying…' : 'Verify the audit trail'}
+          {check.isPending ? say('Verifying…') : say('Verify the audit trail')}
         </Button>
       </p>
       {check.isError ? (
-        <Notice tone="bad" title="The audit trail could not be verified.">
+        <Notice tone="bad" title={say('The audit trail could not be verified.')}>
           {check.error.message}
         </Notice>
       ) : null}
       {data?.holds === true ? (
-        <Notice title={`The audit trail is intact: ${formatCount(data.rows ?? 0)} rows, none changed or removed.`}>
-          Last hash: <span className={styles.hash}>{data.hash ?? ''}</span>
+        <Notice
+          title={say('The audit trail is intact: {rows} rows, none changed or removed.', {
+            rows: formatCount(data.rows ?? 0),
+          })}
+        >
+          {say('Last hash:')} <span className={styles.hash}>{data.hash ?? ''}</span>
         </Notice>
       ) : null}
       {data?.holds === false ? (
-        <Notice tone="bad" title="The audit trail is not intact: it has been changed.">
+        <Notice tone="bad" title={say('The audit trail is not intact: it has been changed.')}>
           {data.failure ?? ''}
         </Notice>
       ) : null}
@@ -50,12 +55,12 @@ function Check() {
 const kFilters: readonly ListFilter[] = [
   {
     name: 'role',
-    label: 'Role',
+    label: marked('Role'),
     choices: [
       ...kRoles.map((value) => ({ value, text: roleName(value) })),
-      { value: 'station', text: 'Station' },
-      { value: 'command line', text: 'Command line' },
-      { value: 'server', text: 'Server' },
+      { value: 'station', text: marked('Station') },
+      { value: 'command line', text: marked('Command line') },
+      { value: 'server', text: marked('Server') },
     ],
   },
 ];
@@ -68,34 +73,36 @@ export function AuditPage() {
   return (
     <Frame
       at="audit"
-      lead="Every change with its author and time. Each row contains a hash of all rows before it, so that a change to the audit trail itself is detected."
+      lead={say(
+        'Every change with its author and time. Each row contains a hash of all rows before it, so that a change to the audit trail itself is detected.',
+      )}
     >
-      <Card title="Integrity check">
+      <Card title={say('Integrity check')}>
         <Check />
       </Card>
       {query.isError ? (
-        <Notice tone="bad" title="The audit trail could not be loaded." onRetry={() => void query.refetch()}>
+        <Notice tone="bad" title={say('The audit trail could not be loaded.')} onRetry={() => void query.refetch()}>
           {query.error.message}
         </Notice>
       ) : null}
-      <Card title="Changes">
+      <Card title={say('Changes')}>
         <ListTable<AuditRow>
-          caption="Changes"
+          caption={say('Changes')}
           list={list}
           page={query.data}
           views={views}
           usual="number"
-          searchLabel="Find by account, action, object or details"
+          searchLabel={say('Find by account, action, object or details')}
           filters={kFilters}
           minWidth={760}
           rows={query.data?.rows}
           keyOf={({ number }) => String(number)}
-          empty="No changes yet."
+          empty={say('No changes yet.')}
           columns={[
-            { name: 'Row', sort: 'number', falls: true, cell: (one) => formatCount(one.number) },
-            { name: 'Time', cell: (one) => formatClock(one.at_utc_us) },
+            { name: marked('Row'), sort: 'number', falls: true, cell: (one) => formatCount(one.number) },
+            { name: marked('Time'), cell: (one) => formatClock(one.at_utc_us) },
             {
-              name: 'Account',
+              name: marked('Account'),
               sort: 'who',
               cell: (one) => (
                 <>
@@ -104,7 +111,7 @@ export function AuditPage() {
               ),
             },
             {
-              name: 'Action',
+              name: marked('Action'),
               sort: 'what',
               cell: (one) => (
                 <>
@@ -113,14 +120,17 @@ export function AuditPage() {
               ),
             },
             {
-              name: 'Object',
+              name: marked('Object'),
               cell: (one) => <span className={styles.muted}>{one.object}</span>,
             },
-            { name: 'Details', cell: (one) => <span className={styles.muted}>{detailOf(one.detail)}</span> },
+            { name: marked('Details'), cell: (one) => <span className={styles.muted}>{detailOf(one.detail)}</span> },
             {
               name: (
-                <Term align="end" definition="First digits of the SHA-256 hash of this row and all rows before it.">
-                  Hash
+                <Term
+                  align="end"
+                  definition={say('First digits of the SHA-256 hash of this row and all rows before it.')}
+                >
+                  {say('Hash')}
                 </Term>
               ),
               cell: (one) => <span className={styles.hash}>{one.hash.slice(0, 10)}</span>,

@@ -1,25 +1,26 @@
 import { useMutation, useQuery, useQueryClient } from '@tanstack/react-query';
 import { backupsQuery, makeBackup, verifyBackup, type Backup } from '@/api';
+import { marked, say } from '@/language';
 import { Badge, Bar, Button, Card, DataTable, Notice, Term } from '@/ui';
 import { formatBytes, formatCount, formatDateTime, formatShare, share } from '@/units';
 import { Frame } from './frame';
 import styles from './network.module.css';
 
-const maker = ({ made_by }: Backup) => (made_by === '' ? 'command line' : made_by);
+const maker = ({ made_by }: Backup) => (made_by === '' ? say('command line') : made_by);
 const isBusy = ({ state }: Backup) => state === 'making' || state === 'verifying';
 
 function State({ backup }: { readonly backup: Backup }) {
   if (backup.state === 'failed')
     return (
       <>
-        <Badge tone="bad">failed</Badge> <span className={styles.muted}>{backup.error}</span>
+        <Badge tone="bad">{say('failed')}</Badge> <span className={styles.muted}>{backup.error}</span>
       </>
     );
-  if (!isBusy(backup)) return <Badge tone="good">complete</Badge>;
+  if (!isBusy(backup)) return <Badge tone="good">{say('complete')}</Badge>;
   return (
     <span className={styles.busy}>
       <span>
-        {backup.state === 'making' ? 'creating' : 'verifying'}, {formatShare(share(backup.share))}
+        {backup.state === 'making' ? say('creating') : say('verifying')}, {formatShare(share(backup.share))}
       </span>
       <Bar share={share(backup.share)} tone="accent" />
     </span>
@@ -27,14 +28,15 @@ function State({ backup }: { readonly backup: Backup }) {
 }
 
 function Verified({ backup: { verified } }: { readonly backup: Backup }) {
-  if (verified === null) return <span className={styles.muted}>not verified</span>;
+  if (verified === null) return <span className={styles.muted}>{say('not verified')}</span>;
   return verified.holds ? (
     <>
-      <Badge tone="good">passed</Badge> <span className={styles.muted}>{formatDateTime(verified.at_utc_us)}</span>
+      <Badge tone="good">{say('passed')}</Badge>{' '}
+      <span className={styles.muted}>{formatDateTime(verified.at_utc_us)}</span>
     </>
   ) : (
     <>
-      <Badge tone="bad">failed</Badge>
+      <Badge tone="bad">{say('failed')}</Badge>
       <ul className={styles.findings}>
         {verified.findings.map((line) => (
           <li key={line}>{line}</li>
@@ -57,79 +59,87 @@ export function BackupsPage() {
   return (
     <Frame
       at="backups"
-      lead="A backup is a copy of all data at one moment: trials, cases, accounts, keys and the audit trail. The server stays in operation while a backup is created."
+      lead={say(
+        'A backup is a copy of all data at one moment: trials, cases, accounts, keys and the audit trail. The server stays in operation while a backup is created.',
+      )}
     >
       {query.isError ? (
-        <Notice tone="bad" title="The backups could not be loaded." onRetry={() => void query.refetch()}>
+        <Notice tone="bad" title={say('The backups could not be loaded.')} onRetry={() => void query.refetch()}>
           {query.error.message}
         </Notice>
       ) : null}
       <Card
-        title="Backups, newest first"
+        title={say('Backups, newest first')}
         aside={
           <Button look="solid" onClick={() => made.mutate()} disabled={busy || query.isPending}>
-            {made.isPending ? 'Starting…' : 'Create backup'}
+            {made.isPending ? say('Starting…') : say('Create backup')}
           </Button>
         }
       >
         <div className={styles.stack}>
           {failed ? (
-            <Notice tone="bad" title="The action failed.">
+            <Notice tone="bad" title={say('The action failed.')}>
               {failed.message}
             </Notice>
           ) : null}
           {query.data ? (
             <p className={styles.muted} role="status">
               {newest
-                ? `The newest verified backup was created ${formatDateTime(newest.made_utc_us)}.`
-                : 'No backup has been verified yet. Verify a backup to be sure that it can be restored.'}
+                ? say('The newest verified backup was created {time}.', {
+                    time: formatDateTime(newest.made_utc_us),
+                  })
+                : say('No backup has been verified yet. Verify a backup to be sure that it can be restored.')}
             </p>
           ) : null}
           <DataTable<Backup>
-            caption="Backups"
-            order="newest first"
+            caption={say('Backups')}
+            order={say('newest first')}
             minWidth={720}
             rows={query.data?.backups}
             keyOf={({ id }) => id}
-            empty="No backups yet. Create the first one."
+            empty={say('No backups yet. Create the first one.')}
             columns={[
-              { name: 'Created', by: (one) => one.made_utc_us, cell: (one) => formatDateTime(one.made_utc_us) },
-              { name: 'Created by', by: maker, cell: maker },
+              { name: marked('Created'), by: (one) => one.made_utc_us, cell: (one) => formatDateTime(one.made_utc_us) },
+              { name: marked('Created by'), by: maker, cell: maker },
               {
-                name: 'Trials',
+                name: marked('Trials'),
                 by: (one) => one.trials,
                 cell: (one) => (one.state === 'making' || one.state === 'failed' ? '–' : formatCount(one.trials)),
                 number: true,
               },
               {
-                name: 'Size',
+                name: marked('Size'),
                 by: (one) => one.size_bytes,
                 cell: (one) => (one.state === 'making' || one.state === 'failed' ? '–' : formatBytes(one.size_bytes)),
                 number: true,
               },
-              { name: 'State', by: (one) => one.state, cell: (one) => <State backup={one} /> },
+              { name: marked('State'), by: (one) => one.state, cell: (one) => <State backup={one} /> },
               {
                 name: (
                   <Term
                     align="end"
-                    definition="The server restores the backup to a temporary folder and checks every object, the references and the audit trail. Then it removes the folder."
+                    definition={say(
+                      'The server restores the backup to a temporary folder and checks every object, the references and the audit trail. Then it removes the folder.',
+                    )}
                   >
-                    Verified
+                    {say('Verified')}
                   </Term>
                 ),
                 cell: (one) => <Verified backup={one} />,
               },
               {
-                name: <span className="hidden-visually">Actions</span>,
+                name: <span className="hidden-visually">{say('Actions')}</span>,
                 cell: (one) =>
                   one.state === 'done' ? (
                     <span className={styles.buttons}>
                       <Button
-                        label={`Verify the backup of ${formatDateTime(one.made_utc_us)}`}
+                        label={say('Verify the backup of {time}', {
+                          time: formatDateTime(one.made_utc_us),
+                        })}
                         disabled={busy}
                         onClick={() => verifying.mutate(one.id)}
                       >
-                        Verify
+                        {say('Verify')}
                       </Button>
                     </span>
                   ) : null,
@@ -137,7 +147,7 @@ export function BackupsPage() {
             ]}
           />
           <p className={styles.muted}>
-            Backups are stored on the server’s own disk: copy them to another machine. To restore a backup:{' '}
+            {say('Backups are stored on the server’s own disk: copy them to another machine. To restore a backup:')}{' '}
             <code>tractus-server restore --from BACKUP --data NEW_FOLDER</code>
           </p>
         </div>

@@ -12,7 +12,8 @@ import {
   type Cohort,
   type CohortSummary,
 } from '@/api';
-import { Badge, Button, Card, DataTable, Field, Notice, Skeleton } from '@/ui';
+import { marked, say } from '@/language';
+import { Badge, Button, Card, DataTable, Field, Notice, roleName, Skeleton } from '@/ui';
 import { formatCount, formatDateTime } from '@/units';
 import { Frame } from './frame';
 import { InvitedPeople } from './invited';
@@ -35,19 +36,19 @@ function NewCohortForm() {
   return (
     <form className={styles.form} onSubmit={submit}>
       <Field
-        label="Name of the new cohort"
+        label={say('Name of the new cohort')}
         value={name}
         required
         maxLength={100}
-        placeholder="Residents 2027"
+        placeholder={say('Residents 2027')}
         onChange={(event) => setName(event.target.value)}
       />
       <Button type="submit" disabled={made.isPending || name.trim() === ''}>
-        {made.isPending ? 'Creating…' : 'Create cohort'}
+        {made.isPending ? say('Creating…') : say('Create cohort')}
       </Button>
       {made.isError ? (
         <p role="alert" className={styles.wide}>
-          The cohort was not created: {made.error.message}
+          {say('The cohort was not created: {message}', { message: made.error.message })}
         </p>
       ) : null}
     </form>
@@ -95,13 +96,13 @@ function Members({ id, role }: { readonly id: string; readonly role: string | un
   const failed = invited.error ?? removed.error;
   if (query.isError)
     return (
-      <Notice tone="bad" title="The cohort could not be loaded." onRetry={() => void query.refetch()}>
+      <Notice tone="bad" title={say('The cohort could not be loaded.')} onRetry={() => void query.refetch()}>
         {query.error.message}
       </Notice>
     );
   if (!query.data)
     return (
-      <Card title="People">
+      <Card title={say('People')}>
         <Skeleton height="200px" />
       </Card>
     );
@@ -115,70 +116,71 @@ function Members({ id, role }: { readonly id: string; readonly role: string | un
         {mayAdd ? (
           <form className={styles.form} onSubmit={submit}>
             <Field
-              label="Account name"
+              label={say('Account name')}
               value={name}
               required
               maxLength={100}
               onChange={(event) => setName(event.target.value)}
             />
             <Button type="submit" disabled={added.isPending || name.trim() === ''}>
-              Add to cohort
+              {say('Add to cohort')}
             </Button>
             <Button
               look="quiet"
               disabled={invited.isPending || name.trim() === ''}
               onClick={() => invited.mutate(name.trim())}
             >
-              Invite instead
+              {say('Invite instead')}
             </Button>
           </form>
         ) : null}
         {added.isError ? (
-          <Notice tone="bad" title="The person was not added.">
-            {added.error.message}. To add people whom you do not teach yet, invite them.
+          <Notice tone="bad" title={say('The person was not added.')}>
+            {added.error.message}. {say('To add people whom you do not teach yet, invite them.')}
           </Notice>
         ) : null}
         {failed ? (
-          <Notice tone="bad" title="The action failed.">
+          <Notice tone="bad" title={say('The action failed.')}>
             {failed.message}
           </Notice>
         ) : null}
         {last ? (
           <p role="status">
-            {last.name} was removed.{' '}
+            {say('{name} was removed.', { name: last.name })}{' '}
             {role === 'admin' ? (
               <Button look="quiet" onClick={() => added.mutate(last.name)}>
-                Undo
+                {say('Undo')}
               </Button>
             ) : null}
           </p>
         ) : null}
         <DataTable<Person>
-          caption="People of the cohort"
+          caption={say('People of the cohort')}
           rows={query.data.people}
           keyOf={({ account_id }) => account_id}
-          empty="No members yet."
-          filter={{ label: 'Filter by name', text: (one) => one.name }}
+          empty={say('No members yet.')}
+          filter={{ label: say('Filter by name'), text: (one) => one.name }}
           columns={[
-            { name: 'Name', by: (one) => one.name, cell: (one) => one.name },
+            { name: marked('Name'), by: (one) => one.name, cell: (one) => one.name },
             {
-              name: 'Role',
+              name: marked('Role'),
               by: (one) => one.part,
-              cell: (one) => (one.part === 'faculty' ? <Badge tone="accent">faculty</Badge> : 'trainee'),
+              cell: (one) =>
+                one.part === 'faculty' ? <Badge tone="accent">{roleName(one.part)}</Badge> : roleName(one.part),
             },
-            { name: 'State', by: (one) => one.state, cell: (one) => one.state },
+            { name: marked('State'), by: (one) => one.state, cell: (one) => say(one.state) },
             {
-              name: <span className="hidden-visually">Actions</span>,
+              name: <span className="hidden-visually">{say('Actions')}</span>,
               cell: (one) =>
                 may ? (
                   <span className={styles.buttons}>
                     <Button
                       look="quiet"
-                      label={`Remove: ${one.name}`}
+                      label={say('Remove: {name}', { name: one.name })}
                       disabled={removed.isPending}
                       onClick={() => removed.mutate(one)}
                     >
-                      Remove
+                      {say('Remove')}
                     </Button>
                   </span>
                 ) : null,
@@ -200,24 +202,26 @@ export function CohortsPage() {
   return (
     <Frame
       at="cohorts"
-      lead="Groups of trainees and the faculty who lead them. Faculty see the trials of the people in their cohorts."
+      lead={say(
+        'Groups of trainees and the faculty who lead them. Faculty see the trials of the people in their cohorts.',
+      )}
     >
       {query.isError ? (
-        <Notice tone="bad" title="The cohorts could not be loaded." onRetry={() => void query.refetch()}>
+        <Notice tone="bad" title={say('The cohorts could not be loaded.')} onRetry={() => void query.refetch()}>
           {query.error.message}
         </Notice>
       ) : null}
       <div className={styles.two}>
-        <Card title="Cohorts">
+        <Card title={say('Cohorts')}>
           <div className={styles.stack}>
             <DataTable<CohortSummary>
-              caption="Cohorts"
+              caption={say('Cohorts')}
               rows={query.data?.cohorts}
               keyOf={({ id }) => id}
-              empty="No cohorts yet."
+              empty={say('No cohorts yet.')}
               columns={[
                 {
-                  name: 'Cohort',
+                  name: marked('Cohort'),
                   by: (one) => one.name,
                   cell: (one) => (
                     <Link href={`/network/cohorts?id=${one.id}`} aria-current={one.id === chosen ? 'true' : undefined}>
@@ -225,8 +229,17 @@ export function CohortsPage() {
                     </Link>
                   ),
                 },
-                { name: 'Trainees', by: (one) => one.trainees, cell: (one) => formatCount(one.trainees), number: true },
-                { name: 'Created', by: (one) => one.made_utc_us, cell: (one) => formatDateTime(one.made_utc_us) },
+                {
+                  name: marked('Trainees'),
+                  by: (one) => one.trainees,
+                  cell: (one) => formatCount(one.trainees),
+                  number: true,
+                },
+                {
+                  name: marked('Created'),
+                  by: (one) => one.made_utc_us,
+                  cell: (one) => formatDateTime(one.made_utc_us),
+                },
               ]}
             />
             {may ? <NewCohortForm /> : null}

@@ -1,15 +1,16 @@
 import { useQuery } from '@tanstack/react-query';
 import type { ReactNode } from 'react';
 import { sessionQuery } from '@/api';
+import { marked, say } from '@/language';
 import { TabbedPage } from '@/ui';
 
 const kPlaces = [
-  { at: 'people', name: 'Accounts', roles: ['admin'] },
-  { at: 'cohorts', name: 'Cohorts', roles: ['admin', 'director', 'faculty'] },
-  { at: 'stations', name: 'Stations', roles: ['admin', 'technician', 'faculty'] },
-  { at: 'backups', name: 'Backups', roles: ['admin', 'technician'] },
-  { at: 'retention', name: 'Retention', roles: ['admin', 'director'] },
-  { at: 'audit', name: 'Audit trail', roles: ['admin'] },
+  { at: 'people', name: marked('Accounts'), roles: ['admin'] },
+  { at: 'cohorts', name: marked('Cohorts'), roles: ['admin', 'director', 'faculty'] },
+  { at: 'stations', name: marked('Stations'), roles: ['admin', 'technician', 'faculty'] },
+  { at: 'backups', name: marked('Backups'), roles: ['admin', 'technician'] },
+  { at: 'retention', name: marked('Retention'), roles: ['admin', 'director'] },
+  { at: 'audit', name: marked('Audit trail'), roles: ['admin'] },
 ] as const;
 type Place = (typeof kPlaces)[number]['at'];
 
@@ -30,7 +31,7 @@ export function Frame({
     .filter((place) => place.at === at || (place.roles as readonly string[]).includes(role))
     .map((place) => ({ to: addressOf(place.at), name: place.name }));
   return (
-    <TabbedPage tabs={tabs} at={addressOf(at)} label="Network" lead={lead}>
+    <TabbedPage tabs={tabs} at={addressOf(at)} label={say('Network')} lead={lead}>
       {children}
     </TabbedPage>
   );

@@ -1,5 +1,6 @@
 import { useMutation } from '@tanstack/react-query';
 import { withdrawInvitation, type Cohort } from '@/api';
+import { marked, say } from '@/language';
 import { Button, Notice, Table } from '@/ui';
 import { formatDateTime } from '@/units';
 
@@ -21,29 +22,29 @@ export function InvitedPeople({
   return (
     <>
       {withdrawn.isError ? (
-        <Notice tone="bad" title="The action failed.">
+        <Notice tone="bad" title={say('The action failed.')}>
           {withdrawn.error.message}
         </Notice>
       ) : null}
       <Table<Invited>
-        caption="Pending invitations"
+        caption={say('Pending invitations')}
         rows={cohort.invitations}
         keyOf={({ name }) => name}
         empty=""
         columns={[
-          { name: 'Invited', cell: (one) => one.name },
-          { name: 'Invited by', cell: (one) => one.made_by },
-          { name: 'Sent', cell: (one) => formatDateTime(one.made_utc_us) },
+          { name: marked('Invited'), cell: (one) => one.name },
+          { name: marked('Invited by'), cell: (one) => one.made_by },
+          { name: marked('Sent'), cell: (one) => formatDateTime(one.made_utc_us) },
           {
-            name: <span className="hidden-visually">Actions</span>,
+            name: <span className="hidden-visually">{say('Actions')}</span>,
             cell: (one) => (
               <Button
                 look="quiet"
-                label={`Withdraw the invitation: ${one.name}`}
+                label={say('Withdraw the invitation: {name}', { name: one.name })}
                 disabled={withdrawn.isPending}
                 onClick={() => withdrawn.mutate(one.name)}
               >
-                Withdraw
+                {say('Withdraw')}
               </Button>
             ),
           },

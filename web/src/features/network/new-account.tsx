@@ -1,6 +1,7 @@
 import { useMutation, useQueryClient } from '@tanstack/react-query';
 import { useState, type FormEvent } from 'react';
 import { allAccountsQuery, addAccount, kRoles, type Role } from '@/api';
+import { say } from '@/language';
 import { AskDialog, Button, Card, Field, Notice, Select } from '@/ui';
 import styles from './network.module.css';
 import { kRoleLabels } from './labels';
@@ -50,11 +51,11 @@ export function NewAccountCard() {
     else create().catch(() => undefined); // shown below
   };
   return (
-    <Card title="New account">
+    <Card title={say('New account')}>
       <div className={styles.stack}>
         <form className={styles.form} onSubmit={submit}>
           <Field
-            label="Name"
+            label={say('Name')}
             value={name}
             required
             maxLength={100}
@@ -62,52 +63,56 @@ export function NewAccountCard() {
             onChange={(event) => setName(event.target.value)}
           />
           <Select
-            label="Role"
+            label={say('Role')}
             value={role}
             onChange={(event) => {
               const next = kRoles.find((one) => one === event.target.value);
               if (next) setRole(next);
             }}
-            options={kRoles.map((one) => ({ value: one, text: kRoleLabels[one].name }))}
+            options={kRoles.map((one) => ({ value: one, text: say(kRoleLabels[one].name) }))}
           />
           <Field
-            label="Badge number (optional)"
+            label={say('Badge number (optional)')}
             value={badge}
             maxLength={64}
             autoComplete="off"
             onChange={(event) => setBadgeText(event.target.value)}
           />
           <Field
-            label="PIN for stations (optional)"
+            label={say('PIN for stations (optional)')}
             value={pin}
             maxLength={12}
             inputMode="numeric"
             autoComplete="off"
             onChange={(event) => setPin(event.target.value)}
           />
-          <p className={`${styles.wide} ${styles.muted}`}>{kRoleLabels[role].description}</p>
+          <p className={`${styles.wide} ${styles.muted}`}>{say(kRoleLabels[role].description)}</p>
           <Button look="solid" type="submit" disabled={made.isPending || name.trim() === ''}>
-            {made.isPending ? 'Creating…' : 'Create account'}
+            {made.isPending ? say('Creating…') : say('Create account')}
           </Button>
         </form>
         {asking ? (
           <AskDialog
-            title={`Make ${name.trim()} an administrator?`}
-            action="Create administrator"
+            title={say('Make {name} an administrator?', { name: name.trim() })}
+            action={say('Create administrator')}
             onClose={() => setAsking(false)}
             onAction={create}
           >
-            <p>An administrator sees and changes everything on this server: accounts, studies, trials and backups.</p>
+            <p>
+              {say(
+                'An administrator sees and changes everything on this server: accounts, studies, trials and backups.',
+              )}
+            </p>
           </AskDialog>
         ) : null}
         {made.isError && !asking ? (
-          <Notice tone="bad" title="The account was not created.">
+          <Notice tone="bad" title={say('The account was not created.')}>
             {made.error.message}
           </Notice>
         ) : null}
         {made.data?.password ? (
-          <Once title={`First password of ${made.data.account.name}`} secret={made.data.password}>
-            This password is shown only once. It must be changed at the first sign-in.
+          <Once title={say('First password of {name}', { name: made.data.account.name })} secret={made.data.password}>
+            {say('This password is shown only once. It must be changed at the first sign-in.')}
           </Once>
         ) : null}
       </div>

@@ -15,6 +15,7 @@ import {
   type Account,
   type Role,
 } from '@/api';
+import { marked, say } from '@/language';
 import { AskDialog, Badge, Button, Card, Field, ListTable, Notice, useList, type ListFilter } from '@/ui';
 import { formatDateTime } from '@/units';
 import { Frame } from './frame';
@@ -39,16 +40,21 @@ function BadgeDialog({
   const [pin, setPin] = useState('');
   return (
     <AskDialog
-      title={`Badge and PIN of ${account.name}`}
-      action="Save"
+      title={say('Badge and PIN of {name}', { name: account.name })}
+      action={say('Save')}
       ready={badge !== '' || pin !== ''}
       onAction={() => setBadge(account.id, badge, pin).then(onDone)}
       onClose={onClose}
     >
-      <p>The trainee signs in at a station with the badge and PIN.</p>
-      <Field label="Badge number" value={badge} maxLength={64} onChange={(event) => setText(event.target.value)} />
+      <p>{say('The trainee signs in at a station with the badge and PIN.')}</p>
       <Field
-        label="New PIN"
+        label={say('Badge number')}
+        value={badge}
+        maxLength={64}
+        onChange={(event) => setText(event.target.value)}
+      />
+      <Field
+        label={say('New PIN')}
         value={pin}
         maxLength={12}
         inputMode="numeric"
@@ -59,16 +65,16 @@ function BadgeDialog({
 }
 
 const stateOf = ({ state, must_change }: Account) =>
-  state === 'disabled' ? 'disabled' : must_change ? 'first password not changed yet' : 'active';
+  say(state === 'disabled' ? 'disabled' : must_change ? marked('first password not changed yet') : 'active');
 
 const kFilters: readonly ListFilter[] = [
-  { name: 'role', label: 'Role', choices: kRoles.map((value) => ({ value, text: roleName(value) })) },
+  { name: 'role', label: marked('Role'), choices: kRoles.map((value) => ({ value, text: roleName(value) })) },
   {
     name: 'state',
-    label: 'State',
+    label: marked('State'),
     choices: [
-      { value: 'active', text: 'active' },
-      { value: 'disabled', text: 'disabled' },
+      { value: 'active', text: marked('active') },
+      { value: 'disabled', text: marked('disabled') },
     ],
   },
 ];
@@ -93,52 +99,53 @@ export function PeoplePage() {
   });
   const failed = role.error ?? state.error;
   return (
-    <Frame at="people" lead="Accounts and their roles. Every change is recorded in the audit trail.">
+    <Frame at="people" lead={say('Accounts and their roles. Every change is recorded in the audit trail.')}>
       {query.isError ? (
-        <Notice tone="bad" title="The accounts could not be loaded." onRetry={() => void query.refetch()}>
+        <Notice tone="bad" title={say('The accounts could not be loaded.')} onRetry={() => void query.refetch()}>
           {query.error.message}
         </Notice>
       ) : null}
       {failed ? (
-        <Notice tone="bad" title="The action failed.">
+        <Notice tone="bad" title={say('The action failed.')}>
           {failed.message}
         </Notice>
       ) : null}
       {password ? (
-        <Once title={`New password of ${password.name}`} secret={password.secret}>
-          This password is shown only once. All sessions of the account have ended and its one-time codes are turned
-          off.
+        <Once title={say('New password of {name}', { name: password.name })} secret={password.secret}>
+          {say(
+            'This password is shown only once. All sessions of the account have ended and its one-time codes are turned off.',
+          )}
         </Once>
       ) : null}
       <p className={styles.ways}>
-        <Link href="/class">Import a class from a spreadsheet</Link>
-        <Link href="/class/change">Change many accounts at once</Link>
-        <Link href="/network/tokens">API tokens of all accounts</Link>
-        <Link href="/network/mail">Mail and webhooks</Link>
+        <Link href="/class">{say('Import a class from a spreadsheet')}</Link>
+        <Link href="/class/change">{say('Change many accounts at once')}</Link>
+        <Link href="/network/tokens">{say('API tokens of all accounts')}</Link>
+        <Link href="/network/mail">{say('Mail and webhooks')}</Link>
       </p>
       <NewAccountCard />
-      <Card title="Accounts">
+      <Card title={say('Accounts')}>
         <ListTable<Account>
-          caption="Accounts"
+          caption={say('Accounts')}
           list={list}
           page={query.data}
           views={views}
           usual="name"
-          searchLabel="Find by name, badge or level"
+          searchLabel={say('Find by name, badge or level')}
           filters={kFilters}
           minWidth={1040}
           rows={query.data?.accounts}
           keyOf={({ id }) => id}
-          empty="No accounts yet."
+          empty={say('No accounts yet.')}
           columns={[
-            { name: 'Name', sort: 'name', cell: (one) => one.name },
+            { name: marked('Name'), sort: 'name', cell: (one) => one.name },
             {
-              name: 'Role',
+              name: marked('Role'),
               sort: 'role',
               cell: (one) => (
                 <span className={styles.role}>
                   <select
-                    aria-label={`Role of ${one.name}`}
+                    aria-label={say('Role of {name}', { name: one.name })}
                     value={one.role}
                     onChange={(event) => {
                       const to = kRoles.find((known) => known === event.target.value);
@@ -148,7 +155,7 @@ export function PeoplePage() {
                   >
                     {kRoles.map((known) => (
                       <option key={known} value={known}>
-                        {roleName(known)}
+                        {say(roleName(known))}
                       </option>
                     ))}
                   </select>
@@ -156,7 +163,7 @@ export function PeoplePage() {
               ),
             },
             {
-              name: 'State',
+              name: marked('State'),
               cell: (one) =>
                 one.state === 'disabled' ? (
                   <Badge tone="warn">{stateOf(one)}</Badge>
@@ -167,40 +174,44 @@ export function PeoplePage() {
                 ),
             },
             {
-              name: 'Badge',
-              cell: (one) => `${one.badge ?? '–'}${one.has_pin ? ', PIN' : ''}`,
+              name: marked('Badge'),
+              cell: (one) => `${one.badge ?? '–'}${one.has_pin ? `, ${say('PIN')}` : ''}`,
             },
-            { name: 'One-time codes', cell: (one) => (one.has_codes ? 'on' : 'off') },
-            { name: 'Created', sort: 'made', falls: true, cell: (one) => formatDateTime(one.made_utc_us) },
+            { name: marked('One-time codes'), cell: (one) => (one.has_codes ? say('on') : say('off')) },
+            { name: marked('Created'), sort: 'made', falls: true, cell: (one) => formatDateTime(one.made_utc_us) },
             {
-              name: <span className="hidden-visually">Actions</span>,
+              name: <span className="hidden-visually">{say('Actions')}</span>,
               cell: (one) => (
                 <span className={styles.buttons}>
                   <Button
-                    label={`Badge and PIN of ${one.name}`}
+                    label={say('Badge and PIN of {name}', { name: one.name })}
                     onClick={() => setAction({ kind: 'badge', account: one })}
                   >
-                    Badge…
+                    {say('Badge…')}
                   </Button>
                   <Button
-                    label={`New password for ${one.name}`}
+                    label={say('New password for {name}', { name: one.name })}
                     disabled={one.id === own}
                     onClick={() => setAction({ kind: 'password', account: one })}
                   >
-                    Password…
+                    {say('Password…')}
                   </Button>
                   <Button
-                    label={`${one.state === 'active' ? 'Disable' : 'Enable'} ${one.name}`}
+                    label={
+                      one.state === 'active'
+                        ? say('Disable {name}', { name: one.name })
+                        : say('Enable {name}', { name: one.name })
+                    }
                     disabled={state.isPending}
                     onClick={() => state.mutate(one)}
                   >
-                    {one.state === 'active' ? 'Disable' : 'Enable'}
+                    {one.state === 'active' ? say('Disable') : say('Enable')}
                   </Button>
                   <Link
                     href={`/network/people/${encodeURIComponent(one.id)}/leaving`}
-                    aria-label={`Erase or anonymise ${one.name}`}
+                    aria-label={say('Erase or anonymise {name}', { name: one.name })}
                   >
-                    Erase…
+                    {say('Erase…')}
                   </Link>
                 </span>
               ),
@@ -213,23 +224,28 @@ export function PeoplePage() {
       ) : null}
       {action?.kind === 'role' ? (
         <AskDialog
-          title={`Change the role of ${action.account.name} to ${roleName(action.to).toLowerCase()}?`}
-          action="Change role"
+          title={say('Change the role of {name} to “{role}”?', {
+            name: action.account.name,
+            role: say(roleName(action.to)),
+          })}
+          action={say('Change role')}
           onClose={() => setAction(null)}
           onAction={() => role.mutateAsync({ id: action.account.id, to: action.to })}
         >
           <p>
             {action.to === 'admin'
-              ? 'An administrator sees and changes everything on this server: accounts, studies, trials and backups.'
-              : 'The person can no longer administrate this server.'}{' '}
-            All sessions of the account end.
+              ? say(
+                  'An administrator sees and changes everything on this server: accounts, studies, trials and backups.',
+                )
+              : say('The person can no longer administrate this server.')}{' '}
+            {say('All sessions of the account end.')}
           </p>
         </AskDialog>
       ) : null}
       {action?.kind === 'password' ? (
         <AskDialog
-          title={`New password for ${action.account.name}`}
-          action="Create new password"
+          title={say('New password for {name}', { name: action.account.name })}
+          action={say('Create new password')}
           onClose={() => setAction(null)}
           onAction={() =>
             resetPassword(action.account.id).then(async ({ password: secret }) => {
@@ -239,7 +255,9 @@ export function PeoplePage() {
           }
         >
           <p>
-            The old password becomes invalid, all sessions of the account end, and its one-time codes are turned off.
+            {say(
+              'The old password becomes invalid, all sessions of the account end, and its one-time codes are turned off.',
+            )}
           </p>
         </AskDialog>
       ) : null}

@@ -10,6 +10,7 @@ import {
   type RetentionRules,
   type RetentionVersion,
 } from '@/api';
+import { marked, say } from '@/language';
 import { Button, Card, DataTable, Field, Notice, Select } from '@/ui';
 import { formatCount, formatDateTime } from '@/units';
 import { Frame } from './frame';
@@ -21,37 +22,43 @@ const kOff: RetentionRules = {
   sign_ins_months: null,
   notice_days: 30,
 };
-const wordOf = (mode: ErasureMode) => (mode === 'erase' ? 'erased' : 'anonymised');
 
 const sentenceOf = (rules: RetentionRules) =>
   [
     rules.inactive_years === null
-      ? 'Trainees stay, however long they are inactive.'
-      : `Trainees without sign-in or trial for ${formatCount(rules.inactive_years)} years are ${wordOf(rules.inactive_mode)}.`,
+      ? say('Trainees stay, however long they are inactive.')
+      : say(
+          rules.inactive_mode === 'erase'
+            ? marked('Trainees without sign-in or trial for {years} years are erased.')
+            : marked('Trainees without sign-in or trial for {years} years are anonymised.'),
+          { years: formatCount(rules.inactive_years) },
+        ),
     rules.sign_ins_months === null
-      ? 'Records of sign-ins stay.'
-      : `Records of sign-ins older than ${formatCount(rules.sign_ins_months)} months are removed.`,
-    `Notice period: ${formatCount(rules.notice_days)} days.`,
+      ? say('Records of sign-ins stay.')
+      : say('Records of sign-ins older than {months} months are removed.', {
+          months: formatCount(rules.sign_ins_months),
+        }),
+    say('Notice period: {days} days.', { days: formatCount(rules.notice_days) }),
   ].join(' ');
 
 function Effect({ effect, on }: { readonly effect: RetentionEffect; readonly on: string }) {
   return (
     <>
       <p role="status">
-        {on} {formatCount(effect.people.length)} people and {formatCount(effect.sign_ins)} records of sign-ins.
+        {say(on, { people: formatCount(effect.people.length), records: formatCount(effect.sign_ins) })}
       </p>
       <DataTable<RetentionEffect['people'][number]>
-        caption="People on whom the rules act"
-        order="by name"
+        caption={say('People on whom the rules act')}
+        order={say('by name')}
         minWidth={560}
         rows={effect.people}
         keyOf={({ id }) => id}
-        empty="Nobody."
+        empty={say('Nobody.')}
         columns={[
-          { name: 'Name', cell: (one) => one.name },
-          { name: 'Last active', cell: (one) => formatDateTime(one.last_utc_us) },
-          { name: 'Acts not before', cell: (one) => formatDateTime(one.acts_utc_us) },
-          { name: 'Notice', cell: (one) => (one.noticed ? 'runs' : 'not yet') },
+          { name: marked('Name'), cell: (one) => one.name },
+          { name: marked('Last active'), cell: (one) => formatDateTime(one.last_utc_us) },
+          { name: marked('Acts not before'), cell: (one) => formatDateTime(one.acts_utc_us) },
+          { name: marked('Notice'), cell: (one) => (one.noticed ? say('runs') : say('not yet')) },
         ]}
       />
     </>
@@ -91,34 +98,34 @@ function RulesForm({ now }: { readonly now: RetentionRules }) {
   return (
     <form className={styles.stack} onSubmit={submit}>
       {failed ? (
-        <Notice tone="bad" title="The action failed.">
+        <Notice tone="bad" title={say('The action failed.')}>
           {failed.message}
         </Notice>
       ) : null}
       <div className={styles.form}>
         <Field
-          label="Years of inactivity (empty: off)"
+          label={say('Years of inactivity (empty: off)')}
           inputMode="numeric"
           value={years}
           onChange={(event) => changed(() => setYears(event.target.value))}
         />
         <Select
-          label="Inactive trainees are"
+          label={say('Inactive trainees are')}
           value={mode}
           onChange={(event) => changed(() => setMode(event.target.value === 'erase' ? 'erase' : 'anonymise'))}
           options={[
-            { value: 'anonymise', text: 'anonymised (trials stay)' },
-            { value: 'erase', text: 'erased with their trials' },
+            { value: 'anonymise', text: say('anonymised (trials stay)') },
+            { value: 'erase', text: say('erased with their trials') },
           ]}
         />
         <Field
-          label="Months of sign-in records (empty: off)"
+          label={say('Months of sign-in records (empty: off)')}
           inputMode="numeric"
           value={months}
           onChange={(event) => changed(() => setMonths(event.target.value))}
         />
         <Field
-          label="Notice period in days (7 to 365)"
+          label={say('Notice period in days (7 to 365)')}
           inputMode="numeric"
           value={days}
           onChange={(event) => changed(() => setDays(event.target.value))}
@@ -126,9 +133,12 @@ function RulesForm({ now }: { readonly now: RetentionRules }) {
       </div>
       {shown.data ? (
         <>
-          <Effect effect={shown.data} on="These rules would act on" />
+          <Effect
+            effect={shown.data}
+            on={marked('These rules would act on {people} people and {records} records of sign-ins.')}
+          />
           <Field
-            label="Reason of the change"
+            label={say('Reason of the change')}
             value={reason}
             maxLength={500}
             onChange={(event) => setReason(event.target.value)}
@@ -141,7 +151,7 @@ function RulesForm({ now }: { readonly now: RetentionRules }) {
           type="submit"
           disabled={shown.isPending || set.isPending || (shown.data !== undefined && reason.trim() === '')}
         >
-          {shown.data ? 'Set these rules' : 'Show on whom they act'}
+          {shown.data ? say('Set these rules') : say('Show on whom they act')}
         </Button>
       </p>
     </form>
@@ -156,40 +166,54 @@ export function RetentionPage() {
   return (
     <Frame
       at="retention"
-      lead="How long people’s data are kept. A rule acts on a person after its notice period; whoever signs in or does a trial meanwhile stays. No rule acts unless a director sets one."
+      lead={say(
+        'How long people’s data are kept. A rule acts on a person after its notice period; whoever signs in or does a trial meanwhile stays. No rule acts unless a director sets one.',
+      )}
     >
       {query.isError ? (
-        <Notice tone="bad" title="The rules could not be loaded." onRetry={() => void query.refetch()}>
+        <Notice tone="bad" title={say('The rules could not be loaded.')} onRetry={() => void query.refetch()}>
           {query.error.message}
         </Notice>
       ) : null}
       {query.data ? (
-        <Card title="Rules now">
+        <Card title={say('Rules now')}>
           <div className={styles.stack}>
-            <p>{newest ? sentenceOf(newest) : 'No rule was ever set: nothing is removed by itself.'}</p>
-            {newest ? <Effect effect={query.data.effect} on="They act on" /> : null}
+            <p>{newest ? sentenceOf(newest) : say('No rule was ever set: nothing is removed by itself.')}</p>
+            {newest ? (
+              <Effect
+                effect={query.data.effect}
+                on={marked('They act on {people} people and {records} records of sign-ins.')}
+              />
+            ) : null}
           </div>
         </Card>
       ) : null}
       {query.data && role === 'director' ? (
-        <Card title="New rules">
+        <Card title={say('New rules')}>
           <RulesForm key={newest?.version ?? 0} now={newest ?? kOff} />
         </Card>
       ) : null}
       {newest ? (
-        <Card title="Versions">
+        <Card title={say('Versions')}>
           <DataTable<RetentionVersion>
-            caption="Versions of the rules"
-            order="newest first"
+            caption={say('Versions of the rules')}
+            order={say('newest first')}
             minWidth={640}
             rows={query.data?.versions}
             keyOf={({ version }) => String(version)}
-            empty="None."
+            empty={say('None.')}
             columns={[
-              { name: 'Version', cell: (one) => formatCount(one.version), number: true },
-              { name: 'Set', cell: (one) => `${formatDateTime(one.made_utc_us)} by ${one.made_by}` },
-              { name: 'Rules', cell: sentenceOf },
-              { name: 'Reason', cell: (one) => one.reason },
+              { name: marked('Version'), cell: (one) => formatCount(one.version), number: true },
+              {
+                name: marked('Set'),
+                cell: (one) =>
+                  say('{time} by {name}', {
+                    time: formatDateTime(one.made_utc_us),
+                    name: one.made_by,
+                  }),
+              },
+              { name: marked('Rules'), cell: sentenceOf },
+              { name: marked('Reason'), cell: (one) => one.reason },
             ]}
           />
         </Card>

@@ -2,6 +2,7 @@ import { useMutation, useQuery, useQueryClient } from '@tanstack/react-query';
 import { useState, type FormEvent } from 'react';
 import { enrolStation, revokeStation, sessionQuery, stationsQuery, type Station } from '@/api';
 import { Link } from 'wouter';
+import { marked, say } from '@/language';
 import { AskDialog, Badge, Button, Card, DataTable, Field, Notice } from '@/ui';
 import { formatDateTime } from '@/units';
 import { Frame } from './frame';
@@ -21,32 +22,35 @@ function Enrol() {
     made.mutate(name.trim());
   };
   return (
-    <Card title="Enrol a station">
+    <Card title={say('Enrol a station')}>
       <div className={styles.stack}>
         <form className={styles.form} onSubmit={submit}>
           <Field
-            label="Name of the station"
+            label={say('Name of the station')}
             value={name}
             required
             maxLength={64}
-            placeholder="skills lab 2"
+            placeholder={say('skills lab 2')}
             onChange={(event) => setName(event.target.value)}
           />
           <Button look="solid" type="submit" disabled={made.isPending || name.trim() === ''}>
-            {made.isPending ? 'Creating…' : 'Create code'}
+            {made.isPending ? say('Creating…') : say('Create code')}
           </Button>
         </form>
         {made.isError ? (
-          <Notice tone="bad" title="The code was not created.">
+          <Notice tone="bad" title={say('The code was not created.')}>
             {made.error.message}
           </Notice>
         ) : null}
         {made.data ? (
           <Once
-            title={`Code for ${made.data.name}, valid until ${formatDateTime(made.data.expires_utc_us)}`}
+            title={say('Code for {name}, valid until {time}', {
+              name: made.data.name,
+              time: formatDateTime(made.data.expires_utc_us),
+            })}
             secret={made.data.code}
           >
-            Enter this code at the station. It can be used once; the station uses it to register its own key.
+            {say('Enter this code at the station. It can be used once; the station uses it to register its own key.')}
           </Once>
         ) : null}
       </div>
@@ -56,6 +60,13 @@ function Enrol() {
 
 const kTones = { revoked: 'warn', offline: 'neutral', fault: 'bad', connected: 'good' } as const;
 
+const kStates: Readonly<Record<keyof typeof kTones, string>> = {
+  revoked: marked('revoked'),
+  offline: marked('offline'),
+  fault: marked('fault'),
+  connected: marked('connected'),
+};
+
 function stateOf(station: Station): keyof typeof kTones {
   if (station.revoked_utc_us !== null) return 'revoked';
   if (!station.connected) return 'offline';
@@ -64,7 +75,7 @@ function stateOf(station: Station): keyof typeof kTones {
 
 function StateBadge({ station }: { readonly station: Station }) {
   const state = stateOf(station);
-  return <Badge tone={kTones[state]}>{state}</Badge>;
+  return <Badge tone={kTones[state]}>{say(kStates[state])}</Badge>;
 }
 
 /** The enrolled stations. */
@@ -77,66 +88,72 @@ export function StationsPage() {
   return (
     <Frame
       at="stations"
-      lead="Stations that may download cases and upload trials. A revoked station is refused immediately; its recordings stay on its disk."
+      lead={say(
+        'Stations that may download cases and upload trials. A revoked station is refused immediately; its recordings stay on its disk.',
+      )}
     >
       {query.isError ? (
-        <Notice tone="bad" title="The stations could not be loaded." onRetry={() => void query.refetch()}>
+        <Notice tone="bad" title={say('The stations could not be loaded.')} onRetry={() => void query.refetch()}>
           {query.error.message}
         </Notice>
       ) : null}
       <p>
-        <Link href="/wall">Live view</Link>
+        <Link href="/wall">{say('Live view')}</Link>
       </p>
       {may ? <Enrol /> : null}
-      <Card title="Stations">
+      <Card title={say('Stations')}>
         <DataTable<Station>
           address=""
-          caption="Stations"
+          caption={say('Stations')}
           minWidth={760}
           rows={query.data?.stations}
           keyOf={({ id }) => id}
-          empty="No stations are enrolled yet."
-          filter={{ label: 'Filter by name or state', text: (one) => `${one.name} ${stateOf(one)}` }}
+          empty={say('No stations are enrolled yet.')}
+          filter={{ label: say('Filter by name or state'), text: (one) => `${one.name} ${say(kStates[stateOf(one)])}` }}
           columns={[
             {
-              name: 'Station',
+              name: marked('Station'),
               by: (one) => one.name,
               cell: (one) => (may ? <Link href={`/network/stations/${one.id}`}>{one.name}</Link> : one.name),
             },
-            { name: 'State', by: stateOf, cell: (one) => <StateBadge station={one} /> },
+            { name: marked('State'), by: stateOf, cell: (one) => <StateBadge station={one} /> },
             {
-              name: 'Last contact',
+              name: marked('Last contact'),
               by: (one) => one.last_seen_utc_us,
-              cell: (one) => (one.last_seen_utc_us === null ? 'never' : formatDateTime(one.last_seen_utc_us)),
+              cell: (one) => (one.last_seen_utc_us === null ? say('never') : formatDateTime(one.last_seen_utc_us)),
             },
             {
-              name: 'Self-test',
+              name: marked('Self-test'),
               by: (one) => one.self_test?.passed,
               cell: (one) =>
                 one.self_test === null ? (
-                  <span className={styles.muted}>not reported yet</span>
+                  <span className={styles.muted}>{say('not reported yet')}</span>
                 ) : (
                   <Badge tone={one.self_test.passed ? 'good' : 'bad'}>
-                    {one.self_test.passed ? 'passed' : 'failed'}
+                    {one.self_test.passed ? say('passed') : say('failed')}
                   </Badge>
                 ),
             },
             {
-              name: 'Calibration',
+              name: marked('Calibration'),
               by: (one) => one.calibration_due_utc_us,
               cell: (one) => {
                 const due = calibrationLabel(one.calibration_due_utc_us, query.dataUpdatedAt * 1000);
                 return <Badge tone={due.tone}>{due.text}</Badge>;
               },
             },
-            { name: 'Enrolled', by: (one) => one.enrolled_utc_us, cell: (one) => formatDateTime(one.enrolled_utc_us) },
             {
-              name: <span className="hidden-visually">Actions</span>,
+              name: marked('Enrolled'),
+              by: (one) => one.enrolled_utc_us,
+              cell: (one) => formatDateTime(one.enrolled_utc_us),
+            },
+            {
+              name: <span className="hidden-visually">{say('Actions')}</span>,
               cell: (one) =>
                 may && one.revoked_utc_us === null ? (
                   <span className={styles.buttons}>
-                    <Button label={`Revoke ${one.name}`} onClick={() => setEnding(one)}>
-                      Revoke…
+                    <Button label={say('Revoke {name}', { name: one.name })} onClick={() => setEnding(one)}>
+                      {say('Revoke…')}
                     </Button>
                   </span>
                 ) : null,
@@ -146,16 +163,17 @@ export function StationsPage() {
       </Card>
       {ending ? (
         <AskDialog
-          title={`Revoke ${ending.name}`}
-          action="Revoke"
+          title={say('Revoke {name}', { name: ending.name })}
+          action={say('Revoke')}
           onClose={() => setEnding(null)}
           onAction={() =>
             revokeStation(ending.id).then(() => client.invalidateQueries({ queryKey: stationsQuery.queryKey }))
           }
         >
           <p>
-            The server refuses the key of this station from now on. This cannot be undone. To use the station again,
-            enrol it again.
+            {say(
+              'The server refuses the key of this station from now on. This cannot be undone. To use the station again, enrol it again.',
+            )}
           </p>
         </AskDialog>
       ) : null}

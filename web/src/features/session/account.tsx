@@ -1,8 +1,9 @@
 import { useMutation, useQuery, useQueryClient } from '@tanstack/react-query';
 import { Link } from 'wouter';
 import { ApiError, sessionQuery, signOut } from '@/api';
-import { say } from '@/language';
+import { say, speak } from '@/language';
 import { Button, roleName } from '@/ui';
+import { sessionLanguage } from './account-language';
 import styles from './account.module.css';
 import { noteSignOut } from './ended';
 
@@ -18,6 +19,7 @@ export function Account() {
     onSuccess: () => {
       noteSignOut();
       client.setQueryData(sessionQuery.queryKey, null);
+      speak(sessionLanguage(client)).catch(() => undefined);
     },
   });
   if (!session.data) return null;

@@ -1,9 +1,10 @@
-import { useMutation } from '@tanstack/react-query';
+import { useMutation, useQueryClient } from '@tanstack/react-query';
 import { useState, type FormEvent } from 'react';
 import { Link } from 'wouter';
 import { beginCodes, confirmCodes, endCodes, ownDataAddress } from '@/api';
-import { say } from '@/language';
-import { Button, Card, Field, Notice, useTitle } from '@/ui';
+import { kLanguageNames, kLanguages, language, readLanguage, say, type Language } from '@/language';
+import { Button, Card, Field, Notice, Select, useTitle } from '@/ui';
+import { chooseOwnLanguage } from './account-language';
 import styles from './own-account.module.css';
 import { PasswordForm } from './password-form';
 
@@ -91,7 +92,30 @@ function Codes() {
   );
 }
 
-/** Password and one-time codes of the signed-in person. */
+function OwnLanguage() {
+  const client = useQueryClient();
+  const chosen = useMutation({ mutationFn: (one: Language) => chooseOwnLanguage(client, one) });
+  return (
+    <div className={styles.stack}>
+      <p>
+        {say('The pages in any browser, the kiosk after you sign in there, and e-mails to you are in this language.')}
+      </p>
+      {chosen.isError ? (
+        <Notice tone="bad" title={say('The action failed.')}>
+          {chosen.error.message}
+        </Notice>
+      ) : null}
+      <Select
+        label={say('Language')}
+        value={language()}
+        options={kLanguages.map((one) => ({ value: one, text: kLanguageNames[one] }))}
+        onChange={({ target }) => chosen.mutate(readLanguage(target.value) ?? 'en')}
+      />
+    </div>
+  );
+}
+
+/** Language, password and one-time codes of the signed-in person. */
 export function OwnAccountPage() {
   useTitle(say('My account'));
   return (
@@ -101,6 +125,9 @@ export function OwnAccountPage() {
         <Link href="/account/tokens">{say('API tokens')}</Link>
         <Link href="/account/notifications">{say('Notifications')}</Link>
       </nav>
+      <Card title={say('Language')}>
+        <OwnLanguage />
+      </Card>
       <Card title={say('Password')}>
         <PasswordForm />
       </Card>

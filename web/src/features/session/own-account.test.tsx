@@ -3,6 +3,7 @@ import { QueryClient, QueryClientProvider } from '@tanstack/react-query';
 import { cleanup, render, screen, waitFor } from '@testing-library/react';
 import userEvent from '@testing-library/user-event';
 import { afterEach, describe, expect, it, vi } from 'vitest';
+import { chooseLanguage } from '@/language';
 import { OwnAccountPage } from './own-account-page';
 
 afterEach(cleanup);
@@ -41,6 +42,26 @@ describe('the own account', () => {
       { old: 'the old password', new: 'a longer password' },
       { old: 'the old password', new: 'a longer password', code: '123456' },
     ]);
+  });
+
+  it('stores the language on the account before the pages speak it', async () => {
+    const sent: [string, Record<string, unknown>][] = [];
+    let refuses = true;
+    open((path, body) => {
+      sent.push([path, body]);
+      return refuses
+        ? json({ error: 'the database does not answer', code: 'unavailable' }, 503)
+        : Promise.resolve(new Response(null, { status: 204 }));
+    });
+    const choice = screen.getByRole('combobox', { name: 'Language' });
+    await userEvent.selectOptions(choice, 'Deutsch');
+    expect(await screen.findByText('the database does not answer')).toBeTruthy();
+    expect(document.documentElement.lang).not.toBe('de');
+    refuses = false;
+    await userEvent.selectOptions(choice, 'Deutsch');
+    await waitFor(() => expect(document.documentElement.lang).toBe('de'));
+    expect(sent).toEqual(Array(2).fill(['/api/v1/session/language', { language: 'de' }]));
+    await chooseLanguage('en');
   });
 
   it('sets up one-time codes by the password alone', async () => {
