@@ -20,8 +20,11 @@ constexpr std::int64_t kMinute_us = 60'000'000;
 TEST_F(SigningIn, SetsACookieThatScriptsAndOtherSitesDoNotGet) {
   const auto in = sign_in_as("ada", kPassword);
   ASSERT_EQ(in.status, 200) << text(in);
-  EXPECT_EQ(json(in),
-            (core::Json{{"name", "ada"}, {"role", "admin"}, {"id", "1"}, {"must_change", false}}));
+  EXPECT_EQ(json(in), (core::Json{{"name", "ada"},
+                                  {"role", "admin"},
+                                  {"id", "1"},
+                                  {"must_change", false},
+                                  {"language", nullptr}}));
   const std::string_view set = in.header("Set-Cookie");
   EXPECT_NE(set.find("; HttpOnly"), std::string::npos);
   EXPECT_NE(set.find("; SameSite=Strict"), std::string::npos);
