@@ -12,6 +12,10 @@ import {createInterface} from 'node:readline';
 
 import Provider, {interactionPolicy} from 'oidc-provider';
 
+// Standard output is for answers alone; what the library has to say goes beside it.
+const answer = (line) => process.stdout.write(`${line}\n`);
+console.log = console.info = console.warn = console.error;
+
 const kScore = 'https://purl.imsglobal.org/spec/lti-ags/scope/score';
 const claim = (name) => `https://purl.imsglobal.org/spec/lti/claim/${name}`;
 const pair = await crypto.subtle.generateKey(
@@ -94,6 +98,7 @@ const configuration = (tool, clientId) => ({
   },
   jwks: {keys: [signingKey]},
   pkce: {required: () => false},
+  fetch: (url, {dispatcher: _toPublicAddressesAlone, ...options}) => fetch(url, options), // the tool is on this machine
   claims: {openid: Object.keys(launchClaims(''))},
   conformIdTokenClaims: false,
   interactions: {policy},
@@ -150,11 +155,14 @@ server.listen(0, '127.0.0.1', () => {
   const lines = createInterface({input: process.stdin});
   lines.on('line', (line) => {
     const said = JSON.parse(line);
-    if (said.tool) provider = new Provider(issuer, configuration(said.tool, said.client_id));
+    if (said.tool) {
+      provider = new Provider(issuer, configuration(said.tool, said.client_id));
+      provider.on('grant.error', (_context, error) => console.error(error));
+    }
     if (said.launch) launch = said.launch;
     if ('away' in said) away = said.away;
-    console.log(said.scores ? JSON.stringify(scores) : 'ready');
+    answer(said.scores ? JSON.stringify(scores) : 'ready');
   });
   lines.on('close', () => process.exit(0));
-  console.log(issuer);
+  answer(issuer);
 });

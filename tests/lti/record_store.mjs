@@ -9,6 +9,9 @@ import {mkdtempSync} from 'node:fs';
 import {tmpdir} from 'node:os';
 import {join} from 'node:path';
 
+// Standard output is for answers alone; what the libraries have to say goes beside it.
+const answer = (line) => process.stdout.write(`${line}\n`);
+console.log = console.info = console.warn = console.error;
 process.env.WINSTON_CONSOLE_LEVEL = 'error';
 process.chdir(mkdtempSync(join(tmpdir(), 'record-store-')));
 const require = createRequire(import.meta.url);
@@ -72,14 +75,14 @@ const server = createServer(app).listen(0, '127.0.0.1', () => {
   lines.on('line', async (line) => {
     if (line !== 'statements') {
       away = line === 'away';
-      console.log('ready');
+      answer('ready');
       return;
     }
     const kept = await fetch(`${base}/xAPI/statements`, {
       headers: {authorization: expected, 'x-experience-api-version': '1.0.3'},
     });
-    console.log(JSON.stringify((await kept.json()).statements));
+    answer(JSON.stringify((await kept.json()).statements));
   });
   lines.on('close', () => process.exit(0));
-  console.log(`${base}/xAPI`);
+  answer(`${base}/xAPI`);
 });

@@ -86,7 +86,7 @@ TEST_F(Statements, SayWhoDidWhatAndHowWellByPseudonym) {
   const std::string actor = said["actor"]["account"]["name"];
   EXPECT_EQ(actor.size(), 17u);
   EXPECT_EQ(actor[0], 'P');
-  EXPECT_EQ(said.dump().find("tom\""), std::string::npos) << said;
+  EXPECT_EQ(said.dump().find("\"tom\""), std::string::npos) << said;
   EXPECT_EQ(said["object"]["id"], "https://tractus.example.org/assignments/a-tom");
   EXPECT_EQ(said["result"], (Json{{"completion", true},
                                   {"duration", "PT12.35S"},

@@ -85,7 +85,7 @@ Result<http::Response> add_account_route(const Call& call) {
 /// Changes the account of the path within one transaction, ends its sessions and answers with it.
 /// `work(account)` may refuse.
 template <class Work>
-Result<http::Response> changed(const Call& call, Work work) {
+Result<http::Response> changed_account(const Call& call, Work work) {
   auto account = TRY(call.backend.store.write([&](store::Writing& tx) -> Result<store::Account> {
     auto found = account_of_call(tx, call);
     if (!found) return found;
@@ -103,7 +103,7 @@ Result<http::Response> set_state(const Call& call) {
   core::Fields fields(json, "body");
   const auto state = fields.word<AccountState>("state");
   TRY(fields.done());
-  return changed(call, [&](store::Writing& tx, store::Account& account) -> Result<void> {
+  return changed_account(call, [&](store::Writing& tx, store::Account& account) -> Result<void> {
     if (state == AccountState::disabled && account.role == Role::admin)
       TRY(check_an_admin_stays(tx, account));
     account.state = state;
@@ -117,7 +117,7 @@ Result<http::Response> set_role(const Call& call) {
   core::Fields fields(json, "body");
   const Role role = role_field(fields);
   TRY(fields.done());
-  return changed(call, [&](store::Writing& tx, store::Account& account) -> Result<void> {
+  return changed_account(call, [&](store::Writing& tx, store::Account& account) -> Result<void> {
     if (account.role == Role::admin && role != Role::admin) TRY(check_an_admin_stays(tx, account));
     account.role = role;
     return store::limit_api_tokens_of(tx, account.id, scopes_for(role), token_end_of(call));
@@ -132,7 +132,7 @@ Result<http::Response> reset_password(const Call& call) {
         "this is your own account: change its password with POST /api/v1/session/password"};
   const std::string password = made_password();
   auto hash = TRY(password_hash(password));
-  TRY(changed(call, [&](store::Writing& tx, store::Account& account) -> Result<void> {
+  TRY(changed_account(call, [&](store::Writing& tx, store::Account& account) -> Result<void> {
     TRY(store::revoke_api_tokens_of(tx, account.id, token_end_of(call)));
     account.password_hash = hash;
     account.must_change = true;
@@ -153,7 +153,7 @@ Result<http::Response> set_badge(const Call& call) {
     auto made = TRY(password_hash(pin));
     hash = std::move(made);
   }
-  return changed(call, [&](store::Writing& tx, store::Account& account) {
+  return changed_account(call, [&](store::Writing& tx, store::Account& account) {
     account.badge = badge;
     account.pin_hash = hash;
     return start_afresh(tx, account.id, store::Secret::badge_pin, badge);

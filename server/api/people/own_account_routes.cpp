@@ -28,7 +28,7 @@ http::Response done() { return {.status = 204, .headers = {}, .body = std::strin
 using Change = std::function<Result<void>(store::Writing&, store::Account&)>;
 
 /// Changes the own account in one transaction and ends its other sessions.
-Result<void> changed(const Call& call, const Change& change) {
+Result<void> changed_own(const Call& call, const Change& change) {
   auto done = call.backend.store.write([&](store::Writing& tx) -> Result<void> {
     auto account = TRY(account_of_session(tx, call));
     TRY(change(tx, account));
@@ -42,7 +42,7 @@ Result<void> changed(const Call& call, const Change& change) {
 
 /// Runs `change`; a wrong one-time code is counted as a failed attempt.
 Result<http::Response> changed_by_code(const Call& call, const bool& wrong, const Change& change) {
-  auto made = changed(call, change);
+  auto made = changed_own(call, change);
   if (wrong) TRY(note_failure(call.backend, own_attempt_of(call)));
   if (!made) return made.error();
   return done();
@@ -87,7 +87,7 @@ Result<http::Response> begin_codes(const Call& call) {
   auto refusal = TRY(refusal_of(call, proof));
   if (refusal) return std::move(*refusal);
   const core::Bytes secret = core::random_bytes(kTotpKey_bytes);
-  TRY(changed(call, [&](store::Writing&, store::Account& own) -> Result<void> {
+  TRY(changed_own(call, [&](store::Writing&, store::Account& own) -> Result<void> {
     if (own.totp_confirmed) return Error{Errc::conflict, kCodesAreOn};
     own.totp_secret = call.backend.secrets.sealed(core::text_of(secret));
     return {};
