@@ -92,10 +92,11 @@ class HostileBodies : public PeopleTest {
     for (const Document& document : documents(route.body_limit_bytes)) {
       const http::Response answer = send(route, headers, document);
       const std::string cell = route.id + " by " + role + ", " + document.what;
-      if (answer.status == 200 && says_what_is_wrong(route))
+      if (answer.status == 200 && says_what_is_wrong(route)) {
         EXPECT_FALSE(json(answer)["error"].get<std::string>().empty()) << cell;
-      else if (!refuses_by_a_page(answer))
+      } else if (!refuses_by_a_page(answer)) {
         EXPECT_GE(answer.status, 400) << cell;
+      }
       EXPECT_LT(answer.status, 500) << cell << ": " << text(answer);
       EXPECT_LT(text(answer).size(), 5000u) << cell;
       ++cells_;
