@@ -39,7 +39,8 @@ struct Block {
 
   void fill(const ProbingMotion& motion, std::size_t from) {
     size = std::min(kBlock, motion.size() - from);
-    for (std::size_t k = 0; k < size; ++k) {  // in place: a tick that is copied waits for its stores
+    for (std::size_t k = 0; k < size;
+         ++k) {  // in place: a tick that is copied waits for its stores
       ticks[k].t_s = motion.t_s[from + k];
       ticks[k].dt_s = from + k == 0 ? 0.0 : motion.t_s[from + k] - motion.t_s[from + k - 1];
       ticks[k].x_m = motion.x_m[from + k];

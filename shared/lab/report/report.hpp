@@ -36,7 +36,7 @@ struct ReportContent {
   std::optional<Side> better;            ///< refitted, with the effects that were found or added
   std::optional<Diagnosis> diagnosis;
   std::optional<StatedVerdict> stated;  ///< with a diagnosis
-  std::optional<Fit> fit;            ///< of the better model, when nothing was diagnosed
+  std::optional<Fit> fit;               ///< of the better model, when nothing was diagnosed
   std::vector<Parameter> start;      ///< the better model's parameters as they were before the fit
   std::vector<Candidate> catalogue;  ///< for equations and units
   std::vector<std::string> notes;    ///< on the recording

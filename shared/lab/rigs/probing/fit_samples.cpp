@@ -38,10 +38,10 @@ FitSamples fit_samples(const ProbingRecording& r) {
   for (std::size_t i = 0; i < r.rest.size(); ++i) {
     if (r.rest[i] < first || (r.rest[i] - first) % step != 0) continue;
     out.rest.push_back((r.rest[i] - first) / step);
-    for (const auto column :
-         {&effects::ProbingMotion::t_s, &effects::ProbingMotion::x_m, &effects::ProbingMotion::v_m_s,
-          &effects::ProbingMotion::a_m_s2, &effects::ProbingMotion::theta_rad,
-          &effects::ProbingMotion::omega_rad_s, &effects::ProbingMotion::tz_Nm})
+    for (const auto column : {&effects::ProbingMotion::t_s, &effects::ProbingMotion::x_m,
+                              &effects::ProbingMotion::v_m_s, &effects::ProbingMotion::a_m_s2,
+                              &effects::ProbingMotion::theta_rad,
+                              &effects::ProbingMotion::omega_rad_s, &effects::ProbingMotion::tz_Nm})
       if (!(at_rest.*column).empty()) (out.at_rest.*column).push_back((at_rest.*column)[i]);
   }
   return out;

@@ -109,8 +109,7 @@ class ProbingProblem final : public Problem, public FormulaTerms {
     }
     set_channels();
     floor_of_bone_ = channels_.front().noise_floor;
-    channels_.front().noise_floor =
-        std::hypot(floor_of_bone_, floor_of_effects(given));
+    channels_.front().noise_floor = std::hypot(floor_of_bone_, floor_of_effects(given));
   }
 
  private:

@@ -47,7 +47,7 @@ struct ProbingRecording : SampledMotion {
   // What a border or a poorly known motion makes of an output; set by weigh().
   std::vector<double> sd_thin;       ///< expected of each output under a true model
   std::vector<Judgement> judgement;  ///< full rate
-  double floor = 0.0;                ///< rmse of the judged samples under a true model without effects
+  double floor = 0.0;  ///< rmse of the judged samples under a true model without effects
 
   double seconds() const { return motion.t_s.back() - motion.t_s.front(); }
   std::size_t size() const { return motion.t_s.size(); }

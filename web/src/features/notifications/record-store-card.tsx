@@ -75,7 +75,7 @@ export function RecordStoreCard() {
           <>
             <Facts
               facts={[
-                { name: say('Endpoint'), value: store.endpoint },
+                { name: say('Address of the record store'), value: store.endpoint },
                 { name: say('Key'), value: store.key },
                 { name: say('Added'), value: formatDateTime(store.made_utc_us) },
               ]}
