@@ -59,10 +59,11 @@ describe('the own account', () => {
     expect(document.documentElement.lang).not.toBe('de');
     refuses = false;
     await userEvent.selectOptions(choice, 'Deutsch');
-    await waitFor(() => expect(document.documentElement.lang).toBe('de'));
+    // The catalogue is read and compiled meanwhile.
+    await waitFor(() => expect(document.documentElement.lang).toBe('de'), { timeout: 20_000 });
     expect(sent).toEqual(Array(2).fill(['/api/v1/session/language', { language: 'de' }]));
     await chooseLanguage('en');
-  });
+  }, 30_000);
 
   it('sets up one-time codes by the password alone', async () => {
     const sent: [string, Record<string, unknown>][] = [];
