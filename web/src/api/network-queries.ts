@@ -118,8 +118,6 @@ export const changePassword = (old: string, next: string, code?: string) =>
     ...posted,
     body: { old, new: next, ...(code === undefined ? {} : { code }) },
   });
-export const setLanguage = (language: string) =>
-  request(address('/api/v1/session/language', {}), { ...posted, body: { language } });
 export const beginCodes = (password: string) =>
   requestJson(address('/api/v1/session/codes', {}), codesSchema, { ...posted, body: { password } });
 export const confirmCodes = (code: string) =>

@@ -54,6 +54,10 @@ export const signIn = (name: string, password: string, code?: string) =>
 
 export const signOut = () => request(address('/api/v1/session', {}), { method: 'DELETE' });
 
+/** Of the account that is signed in. */
+export const setLanguage = (language: string) =>
+  request(address('/api/v1/session/language', {}), { method: 'POST', body: { language } });
+
 /** Searched and sorted by the server; refetched while a trial is being assessed, and from time to time for new trials. */
 export const trialsQuery = (asked: TrialsAsked) =>
   queryOptions({
