@@ -112,10 +112,11 @@ function(tractus_include_roots target)
 endfunction()
 
 # A gtest program of its own, for tests that span folders: tractus_add_test(name SOURCES … DEPS … [LABELS slow] [TIMEOUT s])
+# ALONE: nothing else runs beside it, since it keeps to a bus in real time.
 # BOTH_DATABASES: those of its tests that run on PostgreSQL (PostgreSQL/*) are one test of ctest, so that they share one server.
 # Cases of unit tests (LABELS unit) are one test of ctest too.
 function(tractus_add_test name)
-  cmake_parse_arguments(ARG "BOTH_DATABASES" "TIMEOUT" "SOURCES;DEPS;LABELS" ${ARGN})
+  cmake_parse_arguments(ARG "BOTH_DATABASES;ALONE" "TIMEOUT" "SOURCES;DEPS;LABELS" ${ARGN})
   if(NOT ARG_TIMEOUT)
     set(ARG_TIMEOUT 120)
   endif()
@@ -140,7 +141,7 @@ function(tractus_add_test name)
     tractus_ctest(${name} ${name} "${filter}" 600 "${ARG_LABELS}")
   else()
     gtest_discover_tests(${name} DISCOVERY_MODE PRE_TEST DISCOVERY_TIMEOUT 60 TEST_FILTER "${filter}"
-      PROPERTIES TIMEOUT ${ARG_TIMEOUT} COST ${ARG_TIMEOUT} LABELS "${ARG_LABELS}")
+      PROPERTIES TIMEOUT ${ARG_TIMEOUT} COST ${ARG_TIMEOUT} LABELS "${ARG_LABELS}" RUN_SERIAL ${ARG_ALONE})
   endif()
 endfunction()
 

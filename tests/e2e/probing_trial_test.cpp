@@ -213,8 +213,8 @@ TEST_F(ProbingTrial, AnEmergencyStopNeedsAPersonAtTheMachine) {
   const auto button = [&](int which, std::uint16_t pressed) {
     EXPECT_TRUE(peer.electronics().write(registers::kWorldUnit, which, std::array{pressed}));
   };
-  std::jthread hand([&] {
-    while (peer.answered() < 1500) ::usleep(1000);
+  std::jthread hand([&](const std::stop_token& ended) {
+    while (peer.answered() < 1500 && !ended.stop_requested()) ::usleep(1000);
     button(registers::kStopButton, 1);
   });
   const Ended stopped = on_rig(peer.port());
