@@ -65,7 +65,7 @@ describe.skipIf(bin === undefined)('being told of events', () => {
     await admin.goto('/network/mail');
     await admin.getByText('No mail server is stated.').waitFor();
     const address = `http://127.0.0.1:${String((receiver.address() as AddressInfo).port)}/hook`;
-    await admin.getByLabel('Address (https)').fill(address);
+    await admin.getByLabel('Address (https)', { exact: true }).fill(address);
     await admin.getByLabel('Backup failed').check();
     await admin.getByRole('button', { name: 'Add webhook' }).click();
     const secret = (await admin.locator('[data-part="secret"]').textContent()) ?? '';
@@ -84,7 +84,7 @@ describe.skipIf(bin === undefined)('being told of events', () => {
   }, 120_000);
 
   it('refuses an address of a private network in words, and adds nothing', async () => {
-    await admin.getByLabel('Address (https)').fill('http://10.0.0.1/hook');
+    await admin.getByLabel('Address (https)', { exact: true }).fill('http://10.0.0.1/hook');
     await admin.getByLabel('Backup failed').check();
     await admin.getByRole('button', { name: 'Add webhook' }).click();
     await admin.getByText('an https address is expected').waitFor();
