@@ -195,8 +195,11 @@ TEST(ProbingProblem, HiddenFrictionIsNamedFromAModelThatIsOffByAFifth) {
   EXPECT_NEAR(d->effects[0].parameters[0].value[0], 1.5, 0.03);
 }
 
-TEST(ProbingProblem, ARigThatOnlyTurnsNamesAHiddenStiffness) {
-  constexpr double kViscous_Nms_per_rad = 0.01, kStiffness_Nm_per_rad = 0.02, kNoise_Nm = 2e-4;
+constexpr double kTurnViscous_Nms_per_rad = 0.01, kTurnNoise_Nm = 2e-4;
+
+/// SIMULATED: a stage that turns and does not slide, with a hidden spring. Trials are `more` samples longer one by one.
+std::unique_ptr<Problem> turns_only(double rate_Hz, int samples, int more,
+                                    double stiffness_Nm_per_rad) {
   std::mt19937_64 random(9);
   std::normal_distribution<> normal;
   trial::ProbingSet set;
@@ -206,26 +209,41 @@ TEST(ProbingProblem, ARigThatOnlyTurnsNamesAHiddenStiffness) {
     m.id = "t" + std::to_string(k);
     m.file = m.id + ".csv";
     const double a = 1.5 + 0.2 * k, b = 2.3 * a;
-    for (int i = 0; i < 3000; ++i) {
-      const double t = i / 500.0, theta = 0.8 * std::sin(a * t) + 0.2 * std::sin(b * t + k),
+    for (int i = 0; i < samples + more * k; ++i) {
+      const double t = i / rate_Hz, theta = 0.8 * std::sin(a * t) + 0.2 * std::sin(b * t + k),
                    omega = 0.8 * a * std::cos(a * t) + 0.2 * b * std::cos(b * t + k);
       m.t_s.push_back(t);
       m.theta_rad.push_back(theta + 1e-5 * normal(random));
-      m.tz_Nm.push_back(kViscous_Nms_per_rad * omega + kStiffness_Nm_per_rad * theta +
-                        kNoise_Nm * normal(random));
+      m.tz_Nm.push_back(kTurnViscous_Nms_per_rad * omega + stiffness_Nm_per_rad * theta +
+                        kTurnNoise_Nm * normal(random));
     }
     set.trials.push_back(std::move(m));
   }
   models::ProbingModel model;
   model.name = "turns";
   model.rotary = {.viscous_Nms_per_rad = 0.012, .detent_Nm = 0.0, .detent_pitch_rad = 0.26};
-  const auto d = diagnose(*made(std::move(set), model));
+  return made(std::move(set), model);
+}
+
+TEST(ProbingProblem, ARigThatOnlyTurnsNamesAHiddenStiffness) {
+  constexpr double kStiffness_Nm_per_rad = 0.02;
+  const auto d = diagnose(*turns_only(500.0, 3000, 0, kStiffness_Nm_per_rad));
   ASSERT_TRUE(d) << d.error().what;
   EXPECT_EQ(d->verdict, Verdict::missing);
   ASSERT_EQ(d->effects.size(), 1u);
   EXPECT_EQ(d->effects[0].id, "rotary_stiffness");
   EXPECT_NEAR(d->effects[0].parameters[0].value[0] / kStiffness_Nm_per_rad, 1.0, 0.01);
-  EXPECT_NEAR(d->final_fit.noise_floor / kNoise_Nm, 1.0, 0.1);
+  EXPECT_NEAR(d->final_fit.noise_floor / kTurnNoise_Nm, 1.0, 0.1);
+}
+
+/// Fitted by fewer samples (as the test before the last), whatever remainder the length leaves.
+TEST(ProbingProblem, AFastRecordingOfTurnsMayHaveAnyLength) {
+  const auto problem = turns_only(4000.0, 8000, 7, 0.0);
+  ASSERT_TRUE(problem);
+  const auto f = fit(*problem, {});
+  ASSERT_TRUE(f) << f.error().what;
+  EXPECT_NEAR(f->estimates.at(0).value / kTurnViscous_Nms_per_rad, 1.0, 0.01);
+  EXPECT_NEAR(f->rmse / kTurnNoise_Nm, 1.0, 0.1);
 }
 
 /// Sliding and turning at once. The torque is that of [Probing]'s turning stage without a detent; a hidden spring is added.

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 
 #include "lab/settings.hpp"
 #include "lab/signal/even_clock.hpp"
@@ -134,6 +135,13 @@ std::vector<std::size_t> informative(const ProbingRecording& r) {
     out.push_back(j);
     next_s = m.t_s[k] + stood_s / (kProbingRecording.long_stand_s * kProbingRecording.thin_rate_Hz);
   }
+  return out;
+}
+
+/// Said one by one, so that a filter for every other sample (Decimator::of_every) has no output more.
+std::vector<std::size_t> all_outputs(const ProbingRecording& r) {
+  std::vector<std::size_t> out(r.decimator.size(r.size()));
+  std::iota(out.begin(), out.end(), std::size_t{0});
   return out;
 }
 
@@ -316,10 +324,8 @@ Result<ProbingRecording> prepare(trial::ProbingMeasurement&& trial,
   prepare_sliding(trial, stated, out);
   set_motion(out, borders_m);
   prepare_turning(trial, stated, out);
-  if (turns)
-    find_turning_rest(out);
-  else
-    out.decimator.choose(informative(out));
+  if (turns) find_turning_rest(out);
+  out.decimator.choose(turns ? all_outputs(out) : informative(out));
   out.measured_thin.resize(out.decimator.size(n));
   out.decimator.apply(out.measured, out.measured_thin);
   out.judgement.assign(n, Judgement::judged);
