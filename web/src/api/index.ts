@@ -18,6 +18,7 @@ export * from './trainee-queries';
 export * from './cohort-queries';
 export type { CohortTable } from './cohort-table';
 export { kFeltSigns } from './felt';
+export { heard } from './heard';
 export * from './teaching-queries';
 export { kKinds, kReleases, kWalls } from './teaching-schemas';
 export type * from './teaching-schemas';

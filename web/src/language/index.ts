@@ -1,3 +1,4 @@
+export { hearing } from './heard';
 export {
   kLanguageNames,
   kLanguages,

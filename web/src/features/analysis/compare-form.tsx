@@ -69,7 +69,7 @@ export function CompareForm({
           onChange={(event) => setReference(event.target.value)}
         />
         <Select
-          label={say('By')}
+          label={say('Endpoint')}
           value={endpoint}
           options={endpoints.map(({ name }) => ({ value: name, text: columnName(name, metrics) }))}
           onChange={(event) => setEndpoint(event.target.value)}

@@ -1,5 +1,5 @@
 import { useQuery } from '@tanstack/react-query';
-import { metricsQuery, type MetricFacts, type Requirement, type StepProgress } from '@/api';
+import { heard, metricsQuery, type MetricFacts, type Requirement, type StepProgress } from '@/api';
 import { marked, say } from '@/language';
 import { Badge, type Tone } from '@/ui';
 import styles from './criteria.module.css';
@@ -16,7 +16,7 @@ export function Requirements({ of }: { readonly of: readonly Requirement[] }) {
     <ul className={styles.requirements}>
       {of.map(({ text, basis }) => (
         <li key={text}>
-          {text}
+          {heard(text)}
           {basis === '' ? null : <span className={styles.basis}> — {basis}</span>}
         </li>
       ))}
@@ -31,10 +31,10 @@ export function Judged({ of }: { readonly of: StepProgress['requirements'] }) {
       {of.map(({ met, required, found }) => (
         <li key={required}>
           <span aria-hidden="true">{met ? '✓ ' : '○ '}</span>
-          {required}
+          {heard(required)}
           {found === '' ? null : (
             <>
-              : <strong>{found}</strong>
+              : <strong>{heard(found)}</strong>
             </>
           )}
           <span className="hidden-visually"> {met ? say('(met)') : say('(not met)')}</span>

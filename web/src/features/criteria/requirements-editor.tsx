@@ -14,7 +14,7 @@ function MetricFields({ draft, change }: { readonly draft: RequirementDraft; rea
   const [asking, setAsking] = useState(false);
   const unit = unitOf(draft.metric);
   const shown = typedIn(unit).unit;
-  const label = metrics.find(({ id }) => id === draft.metric)?.label ?? '';
+  const label = say(metrics.find(({ id }) => id === draft.metric)?.label ?? '');
   return (
     <>
       <div className={styles.form}>
@@ -24,7 +24,7 @@ function MetricFields({ draft, change }: { readonly draft: RequirementDraft; rea
           onChange={(event) => change({ metric: event.target.value, bound: '', basis: '' })}
           options={[
             { value: '', text: say('Choose a metric') },
-            ...metrics.map(({ id, label: text }) => ({ value: id, text })),
+            ...metrics.map(({ id, label: text }) => ({ value: id, text: say(text) })),
           ]}
         />
         <Select

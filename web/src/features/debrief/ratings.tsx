@@ -41,7 +41,7 @@ function Given({ request }: { readonly request: RatingRequest }) {
         columns={[
           { name: say('Item'), cell: ({ label }) => label },
           ...held.map(({ rater }, i) => ({
-            name: rater,
+            name: <>{rater}</>, // a name is said in no language
             cell: ({ points }: Row) => formatCount(points[i] ?? 0),
             number: true,
           })),

@@ -1,6 +1,6 @@
 import { useQuery } from '@tanstack/react-query';
 import { Link } from 'wouter';
-import { ApiError, metricsQuery, sessionQuery, traineeQuery, type Attempt, type Trainee } from '@/api';
+import { ApiError, heard, metricsQuery, sessionQuery, traineeQuery, type Attempt, type Trainee } from '@/api';
 import { say } from '@/language';
 import { Badge, Button, Card, DataTable, Facts, Notice, Skeleton, Term, useTitle } from '@/ui';
 import { formatCount, formatDateTime, formatShare } from '@/units';
@@ -48,11 +48,11 @@ function Head({ trainee }: { readonly trainee: Trainee }) {
         <p>
           {say(state.description)}{' '}
           {trainee.certified
-            ? say('Competence can be certified: {why}.', { why: trainee.why })
-            : say('Competence cannot be certified: {why}.', { why: trainee.why })}
+            ? say('Competence can be certified: {why}.', { why: heard(trainee.why) })
+            : say('Competence cannot be certified: {why}.', { why: heard(trainee.why) })}
         </p>
         {trainee.next.why === '' ? null : (
-          <p className={styles.muted}>{say('Next: {why}.', { why: trainee.next.why })}</p>
+          <p className={styles.muted}>{say('Next: {why}.', { why: heard(trainee.next.why) })}</p>
         )}
       </div>
     </Card>
