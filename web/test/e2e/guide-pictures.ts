@@ -6,8 +6,12 @@ import { kShots } from './browser';
 
 const kPictures = fileURLToPath(new URL('../../src/features/guide/pictures/', import.meta.url));
 
-/** The upper part of a page, 1200 × 750. `from`: what the picture begins with; the top of the page without. */
-export async function picture(page: Page, name: string, from?: string): Promise<void> {
+/**
+ * The upper part of a page, 1200 × 750. `from`: what the picture begins with; the top of the page without. `language`: of the page; pictures of
+ * another than English have a folder of their own.
+ */
+export async function picture(page: Page, name: string, from?: string, language = 'en'): Promise<void> {
+  const own = language === 'en' ? '' : `${language}/`;
   const before = page.viewportSize();
   await page.setViewportSize({ width: 1200, height: 750 });
   await page.waitForLoadState('networkidle');
@@ -16,10 +20,10 @@ export async function picture(page: Page, name: string, from?: string): Promise<
     if (selector) document.querySelector(selector)?.scrollIntoView({ block: 'start' });
     else window.scrollTo(0, 0);
   }, from);
-  await page.screenshot({ path: `${kShots}guide-${name}.png` });
+  await page.screenshot({ path: `${kShots}guide-${own.replace('/', '-')}${name}.png` });
   if (process.env.GUIDE_PICTURES) {
-    mkdirSync(kPictures, { recursive: true });
-    await page.screenshot({ path: `${kPictures}${name}.jpg`, type: 'jpeg', quality: 75 });
+    mkdirSync(`${kPictures}${own}`, { recursive: true });
+    await page.screenshot({ path: `${kPictures}${own}${name}.jpg`, type: 'jpeg', quality: 75 });
   }
   if (before) await page.setViewportSize(before);
 }

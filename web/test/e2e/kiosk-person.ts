@@ -1,15 +1,19 @@
 /** Somebody at a kiosk's screen: a scanner types the badge, a finger does the rest. */
 import type { Browser, Page } from 'playwright-core';
+import { Words } from './words';
 
 const kTrial_ms = 90_000;
 
 export class KioskPerson {
-  private constructor(readonly page: Page) {}
+  private constructor(
+    readonly page: Page,
+    private readonly words: Words,
+  ) {}
 
-  static async before(browser: Browser, address: string): Promise<KioskPerson> {
-    const page = await browser.newPage({ viewport: { width: 1200, height: 750 } });
+  static async before(browser: Browser, address: string, words = new Words('en')): Promise<KioskPerson> {
+    const page = await browser.newPage({ locale: words.locale, viewport: { width: 1200, height: 750 } });
     await page.goto(address);
-    return new KioskPerson(page);
+    return new KioskPerson(page, words);
   }
 
   /** Waits for what `selector` names; an error tells what the kiosk shows instead. */
@@ -41,13 +45,13 @@ export class KioskPerson {
     await this.scan(badge);
     await this.screen('pin');
     for (const digit of pin) await this.page.getByRole('button', { name: digit, exact: true }).click();
-    await this.touch('OK');
+    await this.touch(this.words.said('OK'));
     await this.screen('work');
   }
   async answer(wall: string, sure: RegExp): Promise<void> {
     await this.screen('answer');
     await this.touch(wall);
     await this.touch(sure);
-    await this.touch('Give the answer');
+    await this.touch(this.words.said('Give the answer'));
   }
 }

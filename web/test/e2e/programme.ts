@@ -5,6 +5,7 @@ import { join } from 'node:path';
 import { fileURLToPath } from 'node:url';
 import type { Browser, Page } from 'playwright-core';
 import type { Served } from './real-server';
+import { Words } from './words';
 
 const kRoot = fileURLToPath(new URL('../../..', import.meta.url));
 const kPin = '2580',
@@ -170,19 +171,20 @@ export async function at(
   served: Served,
   name: string,
   password: string,
-  dark = false,
+  { dark = false, words = new Words('en') }: { readonly dark?: boolean; readonly words?: Words } = {},
 ): Promise<Page> {
   const context = await browser.newContext({
     viewport: { width: 1440, height: 900 },
     baseURL: served.url,
+    locale: words.locale,
     colorScheme: dark ? 'dark' : 'light',
   });
   const page = await context.newPage();
   page.setDefaultTimeout(30_000);
   await page.goto('/');
-  await page.getByLabel('Name').fill(name);
-  await page.getByLabel('Password').fill(password);
-  await page.getByRole('button', { name: 'Sign in' }).click();
-  await page.getByRole('button', { name: 'Sign out' }).waitFor();
+  await page.getByLabel(words.said('Name')).fill(name);
+  await page.getByLabel(words.said('Password')).fill(password);
+  await page.getByRole('button', { name: words.said('Sign in') }).click();
+  await page.getByRole('button', { name: words.said('Sign out') }).waitFor();
   return page;
 }

@@ -1,11 +1,12 @@
 import { Link } from 'wouter';
-import { say } from '@/language';
+import { language, say } from '@/language';
 import styles from './guide.module.css';
 import type { Step } from './pages';
 
-/** Address of each picture that the tests have made, by its name; a step without one stands alone. */
-const kMade = import.meta.glob<string>('./pictures/*.jpg', { eager: true, query: '?url', import: 'default' });
-const addressOf = (name: string | undefined) => (name === undefined ? undefined : kMade[`./pictures/${name}.jpg`]);
+/** Address of each picture that the tests have made, by its name: in the language that is spoken, or else in English. A step without one stands alone. */
+const kMade = import.meta.glob<string>('./pictures/**/*.jpg', { eager: true, query: '?url', import: 'default' });
+const addressOf = (name: string | undefined) =>
+  name === undefined ? undefined : (kMade[`./pictures/${language()}/${name}.jpg`] ?? kMade[`./pictures/${name}.jpg`]);
 
 export const isMade = (name: string) => addressOf(name) !== undefined;
 
