@@ -173,9 +173,10 @@ function Published({ rows }: { readonly rows: AnalysisResult['published'] }) {
 /** Two analyses may answer the same question: then each is told by its id too. */
 function titleOf(one: AnalysisResult['analyses'][number], all: AnalysisResult['analyses']): string {
   if (one.question === '') return one.id;
+  const question = say(one.question);
   return all.some((other) => other.id !== one.id && other.question === one.question)
-    ? `${one.question} (${one.id})`
-    : one.question;
+    ? `${question} (${one.id})`
+    : question;
 }
 
 /** The result of an analysis: summary sentences, then tests, then each report. */
