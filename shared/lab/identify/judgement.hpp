@@ -13,6 +13,7 @@ enum class Judgement : std::uint8_t {
   judged,
   at_border,       ///< so near to a border of layers that its side is not known
   unknown_motion,  ///< the motion's own noise would make more error than the sensor's
+  saturated,       ///< the sensor stood at the end of its range
   standstill,      ///< dry friction at rest explains any value that was measured
   no_equilibrium,  ///< the model's shank found no rest there
   at_jump,         ///< the model's shank jumps from one rest to another there
@@ -22,6 +23,7 @@ constexpr auto words(Judgement) {
       {Judgement::judged, "judged"},
       {Judgement::at_border, "at a border of layers"},
       {Judgement::unknown_motion, "motion not known well enough"},
+      {Judgement::saturated, "sensor at the end of its range"},
       {Judgement::standstill, "at rest within dry friction"},
       {Judgement::no_equilibrium, "no equilibrium of the shank"},
       {Judgement::at_jump, "at a jump of the shank"},

@@ -140,6 +140,29 @@ TEST(ProbingProblem, TheEndsOfARecordingAreNotJudged) {
 }
 
 /// Jolted once, 3 s after the start: a probe with mass is not judged there, one without is.
+/// Cut off at 0.7 of the largest force, the right model still lacks nothing, and its numbers are found.
+TEST(ProbingProblem, ASensorAtTheEndOfItsRangeIsNotJudged) {
+  auto set = set_of([](const Moment&) { return 0.0; });
+  double most_N = 0.0;
+  for (const auto& trial : set.trials) most_N = std::max(most_N, std::ranges::max(trial.fz_N));
+  for (auto& trial : set.trials)
+    for (double& force_N : trial.fz_N) force_N = std::min(force_N, 0.7 * most_N);
+  const auto problem = made(std::move(set));
+  const auto d = diagnose(*problem);
+  ASSERT_TRUE(d) << d.error().what;
+  EXPECT_EQ(d->verdict, Verdict::complete);
+  EXPECT_NEAR(d->final_fit.rmse, kNoise_N, 0.2 * kNoise_N);
+  for (const Estimate& e : d->final_fit.estimates) {
+    if (e.pointer.ends_with("stiffness_N_per_m")) {
+      EXPECT_NEAR(e.value, kStiffness, 0.01 * kStiffness);
+    }
+  }
+  std::vector<double> values;
+  for (const Parameter& p : problem->parameters({})) values.push_back(p.start);
+  EXPECT_GT(std::ranges::count(problem->full_rate({}, values, 0).judgement, Judgement::saturated),
+            50);
+}
+
 TEST(ProbingProblem, AHeavyProbeIsNotJudgedWhereItsAccelerationIsNotKnown) {
   constexpr double kLittle = 5.0;  // N·s/m: what is not known of the speed makes no force
   const auto at_the_jolt = [](double mass_kg) {

@@ -9,6 +9,7 @@
 
 #include "lab/settings.hpp"
 #include "lab/signal/even_clock.hpp"
+#include "lab/signal/saturation.hpp"
 #include "lab/signal/smoother.hpp"
 
 namespace tractus {
@@ -314,6 +315,7 @@ Result<ProbingRecording> prepare(trial::ProbingMeasurement&& trial,
   const Noise noise =
       noise_of(out.measured, turns ? stated.tz_Nm : stated.fz_N, noise_sd(out.measured));
   out.noise_sd = noise.sd;
+  out.saturated = saturated(out.measured, noise_sd(out.measured));
   out.decimator = Decimator(spacing_s, kProbingRecording.thin_rate_Hz);
   out.slow_noise_sd =
       std::hypot(noise.sd * std::sqrt(out.decimator.noise_gain()) *
@@ -411,27 +413,32 @@ void weigh(const laws::ProbingLaw& law, std::span<const double> by_effects, Prob
   for (std::size_t k = 0; k < n; ++k)
     if (motion_variance[k] > most || k < end || k + end >= n)
       r.judgement[k] = Judgement::unknown_motion;
-  // What is unknown of a sample because nobody can tell on which side of a border it lies: a probe may stand there for long.
-  std::vector<double> at_border(n, 0.0);
+  // What is unknown of a sample, first because nobody can tell on which side of a border it lies: a probe may stand there for long.
+  std::vector<double> unknown(n, 0.0);
   const bool slides = !r.recorded_x_m.empty();
   for (const double border : slides ? borders_of(law.parameters().layers) : std::vector<double>{})
     for (std::size_t k = 0; k < n; ++k) {
       const double near_m = kProbingRecording.on_border_m + 3.0 * r.x_sd_m[k];
       if (!(std::abs(m.x_m[k] - border) < near_m)) continue;
       r.judgement[k] = Judgement::at_border;
-      at_border[k] = std::max(at_border[k], std::abs(judged(law, r, border + near_m, k) -
-                                                     judged(law, r, border - near_m, k)));
+      unknown[k] = std::max(unknown[k], std::abs(judged(law, r, border + near_m, k) -
+                                                 judged(law, r, border - near_m, k)));
     }
   for (const Jump& jump : found)
     for (std::size_t k = jump.sample < reach ? 0 : jump.sample - reach;
          k < std::min(n, jump.sample + reach); ++k)
       r.judgement[k] = Judgement::at_border;
-  for (const Jump& jump : found)
-    at_border[jump.sample] = std::max(at_border[jump.sample], jump.size);
+  for (const Jump& jump : found) unknown[jump.sample] = std::max(unknown[jump.sample], jump.size);
+  // At the end of its range a sensor says no more than that there is at least so much.
+  for (std::size_t k = 0; k < n; ++k) {
+    if (!r.saturated[k]) continue;
+    r.judgement[k] = Judgement::saturated;
+    unknown[k] = std::max(unknown[k], std::abs(r.measured[k]));
+  }
   for (std::size_t j = 0; j < r.sd_thin.size(); ++j)
     r.sd_thin[j] =
         std::sqrt(r.slow_noise_sd * r.slow_noise_sd + motion_variance[r.decimator.middle(j)] +
-                  std::pow(passed_on(at_border, r.decimator, j), 2));
+                  std::pow(passed_on(unknown, r.decimator, j), 2));
   double sum = 0.0, count = 0.0;
   for (std::size_t k = 0; k < n; ++k)
     if (r.judgement[k] == Judgement::judged)

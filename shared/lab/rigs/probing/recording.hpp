@@ -38,6 +38,7 @@ struct ProbingRecording : SampledMotion {
   std::vector<double> theta_sd_rad,
       omega_sd_rad_s;            ///< the same of the turning; empty without an angle
   std::vector<double> measured;  ///< of the primary channel (fz_N, or tz_Nm), full rate
+  std::vector<char> saturated;   ///< where the sensor of `measured` stood at the end of its range
   std::vector<double> other;     ///< tz_Nm beside fz_N, or empty
   double noise_sd = 0.0;         ///< of one sample of `measured`
   double slow_noise_sd = 0.0;    ///< of one sample after filter and thinning
