@@ -7,9 +7,11 @@ namespace tractus {
 namespace lab {
 namespace {
 
+/// Of one run in a whole channel that noise alone would leave alike. Prior.
 constexpr double kChance = 1e-3;
-/// Noise below this share of a usual step between neighbours is not visible.
+/// Noise below this share of a usual step between neighbours is not visible. Prior.
 constexpr double kVisible = 0.01;
+/// Fewer samples do not say how often neighbours are alike. Bound.
 constexpr std::size_t kFewest = 100;
 
 double usual_step(std::span<const double> y) {

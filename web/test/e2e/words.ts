@@ -3,10 +3,10 @@ import { IntlMessageFormat } from 'intl-messageformat';
 import { catalogue as german } from '../../src/language/german';
 import { kLocales, type Values } from '../../src/language/language';
 
-export type WeekLanguage = 'en' | 'de';
+export type TestedLanguage = 'en' | 'de';
 
 export class Words {
-  constructor(readonly language: WeekLanguage) {}
+  constructor(readonly language: TestedLanguage) {}
 
   /** What a browser of that language asks for. */
   get locale(): string {
@@ -18,7 +18,7 @@ export class Words {
     if (text === undefined) throw new Error(`no translation: ${english}`);
     return String(new IntlMessageFormat(text, this.locale, undefined, { ignoreTag: true }).format(values));
   };
-  /** The sentence, with anything in place of what is not given. Of several sentences (`…. …`) all must be there. */
+  /** What matches the sentence with anything in place of a value that is not given. */
   like = (english: string, values: Values = {}): RegExp => {
     const open = Object.fromEntries([...english.matchAll(/\{(\w+)/g)].map(([, name = '']) => [name, '\u0000']));
     const text = this.said(english, { ...open, ...values });

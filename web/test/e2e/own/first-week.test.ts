@@ -13,7 +13,7 @@ import { startKiosk } from '../kiosk-station';
 import { at, kTrainees, scored } from '../programme';
 import { programs, serveReal, type Served } from '../real-server';
 import { furnishResidency, kClass, kClassList, kExperts, kPin, kResidents, type Residency } from '../residency';
-import { Words, type WeekLanguage } from '../words';
+import { Words, type TestedLanguage } from '../words';
 
 const bin = programs('tractus-server', 'tractus-station', 'tractus') ?? '';
 const [abel, berg, ...others] = kClass as unknown as [Member, Member, ...Member[]];
@@ -41,7 +41,7 @@ const sheets = async (page: Page, name: string) => {
   return pdf.toString('latin1').match(/\/Type\s*\/Page[^s]/g)?.length ?? 0;
 };
 
-const kWeeks: readonly WeekLanguage[] = ['en', 'de'];
+const kWeeks: readonly TestedLanguage[] = ['en', 'de'];
 
 describe.skipIf(bin === '').each(kWeeks)('the first week of a residency, %s', (language) => {
   const words = new Words(language);
