@@ -237,6 +237,28 @@ TEST(Surgeon, LetsGoAfterItsReactionTimeWhenTheBoneGivesWay) {
   EXPECT_EQ(machine.reading().force_N, 0.0);
 }
 
+/// As after an emergency stop in the middle of a trial: whoever holds on is told to let go at 30 N.
+TEST(Surgeon, LetsGoOfAStageThatReturnsToTheEntryAndStartsThere) {
+  Machine machine{quiet()};
+  World world;
+  world.surgeon = true;
+  machine.set_world(world);
+  yield(machine, 8000.0, 6000);
+  const double deep_m = machine.reading().x_m;
+  ASSERT_GT(deep_m, 0.02);
+  for (const int off_ms : {50, 500}) {  // sooner than its reaction time, and later
+    run(machine, kOff, off_ms);
+    double most_N = 0.0;
+    while (machine.reading().x_m > (off_ms == 50 ? 0.5 * deep_m : 0.0005)) {
+      run(machine, moving(-0.02), 1);
+      most_N = std::max(most_N, machine.reading().force_N);
+    }
+    EXPECT_LT(most_N, 5.0) << off_ms;
+  }
+  run(machine, moving(0.0), 1000);
+  EXPECT_GT(machine.reading().force_N, 10.0);  // 3000 N/m, 6 mm/s: at work again
+}
+
 TEST(Surgeon, KeepsItsHandsOffAStageThatIsNotEnabled) {
   Machine machine{quiet()};
   World world;

@@ -10,6 +10,7 @@ namespace rig {
 namespace {
 constexpr double kTremor_Hz = 9.0;
 constexpr double kMostTurn_Nm = 1.0;
+constexpr double kEntry_m = 5e-4;  // nearer than this a person takes the stage to be at the entry
 constexpr double kNovice = 0.25, kMaster = 0.95, kHalfway_years = 2.0;
 }  // namespace
 
@@ -38,11 +39,14 @@ void Surgeon::begin(double x_m) {
   phase_rad_ = 2.0 * std::numbers::pi * about(random_);
   goal_m_ = x_m;
   time_s_ = 0.0;
-  startled_at_s_ = resting_until_s_ = -1.0;
+  startled_at_s_ = -1.0;
+  // A stage that is enabled away from the entry may be on its way back: a person looks first.
+  resting_until_s_ = x_m > kEntry_m ? p_.reaction_s : -1.0;
+  push_N_ = 0.0;
 }
 
 void Surgeon::step(double x_m, double v_m_s, double omega_rad_s, bool enabled, double dt_s) {
-  if (enabled && !at_work_) begin(x_m);
+  if (enabled && (!at_work_ || off_s_ > 0.0)) begin(x_m);
   off_s_ = enabled ? 0.0 : off_s_ + dt_s;
   at_work_ = enabled || (at_work_ && off_s_ < p_.reaction_s);
   if (!at_work_) {
@@ -59,7 +63,9 @@ void Surgeon::step(double x_m, double v_m_s, double omega_rad_s, bool enabled, d
     resting_until_s_ = time_s_ + p_.pause_s;
     startled_at_s_ = -1.0;
   }
-  if (time_s_ < resting_until_s_) {
+  const bool hands_off = push_N_ == 0.0 && x_m > kEntry_m;
+  const bool returning = v_m_s < -p_.speed_goal_m_s;
+  if (time_s_ < resting_until_s_ || (hands_off && returning)) {
     goal_m_ = x_m;
     push_N_ = 0.0;
     return;

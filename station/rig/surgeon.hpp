@@ -28,7 +28,8 @@ struct SurgeonParameters {
 };
 
 /// Pushes while the drive is enabled: spring and damper to a point that advances at the speed goal.
-/// What it perceives of the stage's speed reaches it only after its reaction time.
+/// What it perceives of the stage's speed reaches it only after its reaction time. A hand that is
+/// off a stage which returns to the entry stays off until the stage is there.
 class Surgeon {
  public:
   Surgeon(const SurgeonParameters& parameters, std::uint64_t seed);
