@@ -163,6 +163,17 @@ core::Result<Placed> with_walls(const volume::Volume& bone,
   return placed;
 }
 
+core::Result<volume::Volume> prepared_ct(const volume::Volume& ct,
+                                         const volume::TransferFunction& transfer,
+                                         const Placed& placed) {
+  const auto& tract = placed.tract;
+  const auto box = TRY(box_that_matters(ct.geometry, tract.entry_m, tract.end_m()));
+  auto part = TRY(volume::resample_finer(ct, box, ct.geometry.spacing_m.maxCoeff()));
+  if (placed.envelope)
+    TRY(volume::Filling::make(transfer)).fill(part, *placed.envelope, placed.tract);
+  return part;
+}
+
 /// An anterior breach is felt by taps at the end: its wall must be there.
 core::Result<void> check_front(const Placed& placed) {
   if (!placed.breach || placed.breach->wall.wall != volume::Wall::anterior) return {};
@@ -226,8 +237,9 @@ core::Result<volume::Tract> planned_tract(const volume::Volume& ct,
   return tract_of(ct, transfer, plan, length_m, TRY(midline_of(ct, transfer, plan)));
 }
 
-core::Result<Placed> place(const volume::Volume& ct, const volume::TransferFunction& transfer,
-                           const CarvingPlan& plan) {
+core::Result<PlacedInBone> place_in_bone(const volume::Volume& ct,
+                                         const volume::TransferFunction& transfer,
+                                         const CarvingPlan& plan) {
   const double length_m = length_of(plan);
   TRY(check(plan, length_m, ct.geometry));
   const auto empty = TRY(volume::empty_value(ct, transfer));
@@ -240,27 +252,22 @@ core::Result<Placed> place(const volume::Volume& ct, const volume::TransferFunct
                 .envelope = {},
                 .walls = {}};
   placed.drilled = plan.drilled;
-  if (plan.preparation == volume::Preparation::published)
-    return with_walls(ct, transfer, plan, std::move(placed));
-  placed.envelope = TRY(envelope_of(ct, plan, tract));
-  placed.calibration = calibration_of(ct, *placed.envelope, tract);
-  const auto bone = TRY(prepared_ct(ct, transfer, placed));
-  if (!plan.length_m)
+  const bool filled = plan.preparation == volume::Preparation::filled;
+  if (filled) {
+    placed.envelope = TRY(envelope_of(ct, plan, tract));
+    placed.calibration = calibration_of(ct, *placed.envelope, tract);
+  }
+  auto bone = TRY(prepared_ct(ct, transfer, placed));
+  if (filled && !plan.length_m)
     placed.tract.length_m = length_to_front_m(volume::WallFinder(bone, transfer), tract);
   placed = TRY(with_walls(bone, transfer, plan, std::move(placed)));
-  TRY(check_front(placed));
-  return placed;
+  if (filled) TRY(check_front(placed));
+  return PlacedInBone{std::move(placed), std::move(bone)};
 }
 
-core::Result<volume::Volume> prepared_ct(const volume::Volume& ct,
-                                         const volume::TransferFunction& transfer,
-                                         const Placed& placed) {
-  const auto& tract = placed.tract;
-  const auto box = TRY(box_that_matters(ct.geometry, tract.entry_m, tract.end_m()));
-  auto part = TRY(volume::resample_finer(ct, box, ct.geometry.spacing_m.maxCoeff()));
-  if (placed.envelope)
-    TRY(volume::Filling::make(transfer)).fill(part, *placed.envelope, placed.tract);
-  return part;
+core::Result<Placed> place(const volume::Volume& ct, const volume::TransferFunction& transfer,
+                           const CarvingPlan& plan) {
+  return TRY(place_in_bone(ct, transfer, plan)).placed;
 }
 
 core::Result<volume::Volume> bone_about(const volume::Volume& ct,

@@ -84,11 +84,17 @@ core::Result<volume::Tract> planned_tract(const volume::Volume& ct,
 core::Result<Placed> place(const volume::Volume& ct, const volume::TransferFunction& transfer,
                            const CarvingPlan& plan);
 
-/// The CT about a tract at its own spacing, prepared: what `place` finds walls in. Errors:
-/// out_of_range (Filling).
-core::Result<volume::Volume> prepared_ct(const volume::Volume& ct,
+/// What was placed, and what its walls were found in: the CT about the tract at its own spacing,
+/// prepared.
+struct PlacedInBone {
+  Placed placed;
+  volume::Volume bone;
+};
+/// `place`, with the bone. Errors: those of `place`.
+core::Result<PlacedInBone> place_in_bone(const volume::Volume& ct,
                                          const volume::TransferFunction& transfer,
-                                         const Placed& placed);
+                                         const CarvingPlan& plan);
+
 /// The bone about what was placed on its finer grid, prepared, before the drill. Errors: too_large,
 /// cancelled, out_of_range (Filling).
 core::Result<volume::Volume> bone_about(const volume::Volume& ct,

@@ -1,6 +1,7 @@
 #include "cases/making.hpp"
 
 #include <fmt/format.h>
+#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
@@ -27,15 +28,17 @@ constexpr double kTapped_m = 0.003;  // WallCertificate::kLeastEndForce_N within
 template <class Bound>
 std::vector<double> enclosed_depths(const volume::WallFinder& finder, const volume::Tract& tract,
                                     const Bound& bound) {
-  std::vector<double> out;
-  for (double at = 0.0; at <= tract.length_m; at += kRingStep_m) {
-    bool enclosed = true;
-    for (std::size_t w = 0; w < kSideWalls && enclosed; ++w) {
-      const auto found = finder.wall_at(tract, volume::kWalls[w], at);
-      enclosed = found && bound(*found);
+  std::vector<double> depths_m, out;
+  for (double at = 0.0; at <= tract.length_m; at += kRingStep_m) depths_m.push_back(at);
+  std::vector<char> enclosed(depths_m.size(), 1);
+  tbb::parallel_for(std::size_t(0), depths_m.size(), [&](std::size_t k) {
+    for (std::size_t w = 0; w < kSideWalls && enclosed[k]; ++w) {
+      const auto found = finder.wall_at(tract, volume::kWalls[w], depths_m[k]);
+      enclosed[k] = found && bound(*found);
     }
-    if (enclosed) out.push_back(at);
-  }
+  });
+  for (std::size_t k = 0; k < depths_m.size(); ++k)
+    if (enclosed[k]) out.push_back(depths_m[k]);
   return out;
 }
 
@@ -299,11 +302,11 @@ struct Judged {
 core::Result<Judged> judge(const volume::Volume& ct, const models::PalpationModel& model,
                            const CarvingPlan& plan, Effort effort, const Perception& perception,
                            const core::Progress& progress) {
-  Judged out{TRY(place(ct, model.transfer, plan)), {}, {}, {}};
+  auto [placed, bone] = TRY(place_in_bone(ct, model.transfer, plan));
+  Judged out{std::move(placed), {}, {}, {}};
   const core::Progress resampling =
       progress ? [&](double share) { return progress(kBoneShare * share); } : core::Progress();
   out.bone = TRY(bone_about(ct, model.transfer, plan, out.placed, resampling));
-  const auto bone = TRY(prepared_ct(ct, model.transfer, out.placed));
   const Places places(bone, model.transfer, plan, out.placed);
   auto tried = TRY(Tried::make(out.bone, model, out.placed, places.from_m(), perception));
   out.walls = TRY(try_walls(places, tried, plan, effort, progress));

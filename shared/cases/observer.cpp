@@ -167,7 +167,7 @@ void Observer::press(const PalpationRuntime& probe, std::size_t wall, int first,
 
 void Observer::tap(const PalpationRuntime& probe, Palpated& out) const {
   const double aside = 0.5 * tract_.radius_m;
-  for (std::size_t place = 0; place < out.tap_N.size(); ++place) {
+  tbb::parallel_for(std::size_t(0), out.tap_N.size(), [&](std::size_t place) {
     const Vec3 offset = place == 0 ? Vec3::Zero() : Vec3(aside * outwards_of(tract_, place - 1));
     out.tap_N[place].assign(kPushes, kNone);
     laws::PalpationState state;
@@ -177,7 +177,7 @@ void Observer::tap(const PalpationRuntime& probe, Palpated& out) const {
       const auto step = probe.step(X_VH, state);
       out.tap_N[place][std::size_t(j)] = float(-(X_VH.q * step.wrench_H.force_N).dot(tract_.axis));
     }
-  }
+  });
 }
 
 core::Result<Palpated> Observer::palpate(const volume::ForceField& field) const {
@@ -208,11 +208,12 @@ core::Result<Palpated> Observer::palpate_near(const volume::ForceField& field,
 
 Observer::Felt Observer::felt(const Palpated& palpated, const Perception& perception) const {
   Felt out;
-  for (std::size_t motion = 0; motion < kMotions; ++motion)
-    for (std::size_t wall = 0; wall < kSideWalls; ++wall)
-      out.side[motion][wall] =
-          blurred(palpated.side_N[motion][wall], depths_, kGrids[motion].leans,
-                  perception.wander_m / kDepthStep_m, perception.wander_m / kGrids[motion].step_m);
+  tbb::parallel_for(std::size_t(0), kMotions * kSideWalls, [&](std::size_t n) {
+    const std::size_t motion = n / kSideWalls, wall = n % kSideWalls;
+    out.side[motion][wall] =
+        blurred(palpated.side_N[motion][wall], depths_, kGrids[motion].leans,
+                perception.wander_m / kDepthStep_m, perception.wander_m / kGrids[motion].step_m);
+  });
   Palpated::Grid all;
   for (const auto& place : palpated.tap_N) all.insert(all.end(), place.begin(), place.end());
   // Five places as rows, blurred along the push alone; then the mean over places and its spread.

@@ -36,35 +36,50 @@ struct Score {
   double rank = 0.0;      // the same times Σ 2αα′
 };
 
-class Mirror {
+/// Opacities on lines across a plane, of the planes that run beside it: every point is measured once.
+class Lines {
  public:
-  Mirror(const Volume& volume, const TransferFunction& transfer, const Region& region)
-      : volume_(volume), transfer_(transfer), region_(region) {}
-
-  Score score(const Midline& plane) const {
-    const Vec3 left = plane.left(), along(-left.y(), left.x(), 0.0);
-    double both = 0.0, own = 0.0;
-    for (double y = region_.y_low; y <= region_.y_high; y += kStep_m)
-      for (double z = region_.z_low; z <= region_.z_high; z += kStep_m) {
-        Vec3 foot = plane.at_m + (y - plane.at_m.y()) * along;
+  /// @param reach_m  how far beside `middle` a plane is scored
+  Lines(const Volume& volume, const TransferFunction& transfer, const Region& region,
+        const Midline& middle, double reach_m, double grid_m)
+      : grid_m_(grid_m),
+        reach_(int(std::lround((reach_m + kReach_m) / grid_m))),
+        across_(std::size_t(2 * reach_ + 1)) {
+    const Vec3 left = middle.left(), along(-left.y(), left.x(), 0.0);
+    for (double y = region.y_low; y <= region.y_high; y += kStep_m)
+      for (double z = region.z_low; z <= region.z_high; z += kStep_m) {
+        Vec3 foot = middle.at_m + (y - middle.at_m.y()) * along;
         foot.z() = z;
-        for (double u = kStep_m / 2; u < kReach_m; u += kStep_m)
-          add(foot + u * left, foot - u * left, both, own);
+        for (int n = -reach_; n <= reach_; ++n) {
+          const Vec3 p = foot + n * grid_m * left;
+          opacity_.push_back(
+              volume.geometry.contains(p) ? float(transfer.opacity(volume.value_at(p))) : kOutside);
+        }
       }
+  }
+
+  /// Of the plane `aside` steps to the left of the middle one.
+  Score score(int aside) const {
+    const int step = int(std::lround(kStep_m / grid_m_));
+    const int pairs = int(kReach_m / kStep_m);
+    double both = 0.0, own = 0.0;
+    for (std::size_t line = 0; line < opacity_.size(); line += across_) {
+      const float* at = &opacity_[line + std::size_t(reach_ + aside)];
+      for (int n = step / 2, last = n + pairs * step; n < last; n += step) {
+        const float a = at[n], b = at[-n];
+        if (a == kOutside || b == kOutside) continue;
+        both += 2.0 * double(a * b), own += double(a * a + b * b);
+      }
+    }
     return own > 0.0 ? Score{both / own, both / own * both} : Score{};
   }
 
  private:
-  void add(const Vec3& p, const Vec3& q, double& both, double& own) const {
-    if (!volume_.geometry.contains(p) || !volume_.geometry.contains(q)) return;
-    const double a = transfer_.opacity(volume_.value_at(p)),
-                 b = transfer_.opacity(volume_.value_at(q));
-    both += 2 * a * b;
-    own += a * a + b * b;
-  }
-  const Volume& volume_;
-  const TransferFunction& transfer_;
-  Region region_;
+  static constexpr float kOutside = -1.0f;
+  double grid_m_;
+  int reach_;
+  std::size_t across_;
+  std::vector<float> opacity_;  // [y][z][across]
 };
 
 struct Found {
@@ -72,23 +87,34 @@ struct Found {
   Score score;
 };
 
-/// The best plane of a grid of offsets and turns about `middle`.
-Found best_of(const Mirror& mirror, const Midline& middle, double offset_m, double offset_step_m,
-              double turn_rad, double turn_step_rad) {
-  std::vector<Found> planes;
-  const int offsets = int(std::lround(offset_m / offset_step_m)),
-            turns = int(std::lround(turn_rad / turn_step_rad));
-  for (int i = -offsets; i <= offsets; ++i)
-    for (int j = -turns; j <= turns; ++j) {
-      Midline plane = middle;
-      plane.at_m.x() += i * offset_step_m;
-      plane.turn_rad = std::clamp(middle.turn_rad + j * turn_step_rad, -kTurn_rad, kTurn_rad);
-      planes.push_back({plane, {}});
+/// Planes beside and turned against a middle one.
+struct Planes {
+  double aside_m, aside_step_m;  // to either side; whole steps, of 2 mm or a whole part of 1 mm
+  double turn_rad, turn_step_rad;
+};
+
+/// The best of some planes about `middle`.
+Found best_of(const Volume& volume, const TransferFunction& transfer, const Region& region,
+              const Midline& middle, const Planes& planes) {
+  const double grid_m = std::min(planes.aside_step_m, kStep_m / 2.0);
+  const int most = int(std::lround(planes.aside_m / grid_m)),
+            step = int(std::lround(planes.aside_step_m / grid_m)),
+            turns = int(std::lround(planes.turn_rad / planes.turn_step_rad));
+  std::vector<Found> of_turn(std::size_t(2 * turns + 1), {middle, {}});
+  tbb::parallel_for(std::size_t(0), of_turn.size(), [&](std::size_t n) {
+    Midline turned = middle;
+    turned.turn_rad = std::clamp(middle.turn_rad + (int(n) - turns) * planes.turn_step_rad,
+                                 -kTurn_rad, kTurn_rad);
+    const Lines lines(volume, transfer, region, turned, planes.aside_m, grid_m);
+    for (int aside = -most; aside <= most; aside += step) {
+      const Score score = lines.score(aside);
+      if (score.rank <= of_turn[n].score.rank) continue;
+      of_turn[n] = {turned, score};
+      of_turn[n].plane.at_m.x() += aside * grid_m / std::cos(turned.turn_rad);
     }
-  tbb::parallel_for(std::size_t(0), planes.size(),
-                    [&](std::size_t n) { planes[n].score = mirror.score(planes[n].plane); });
+  });
   Found best{middle, {}};
-  for (const Found& found : planes)
+  for (const Found& found : of_turn)
     if (found.score.rank > best.score.rank) best = found;
   return best;
 }
@@ -104,15 +130,14 @@ core::Result<Midline> midline_about(const Volume& volume, const TransferFunction
   if (!entry_m.allFinite() || !target_m.allFinite())
     return refused(core::Errc::bad_input, "entry and target must be finite numbers");
   const double z = (entry_m.z() + target_m.z()) / 2;
-  const Mirror mirror(
-      volume, transfer,
-      {std::min(entry_m.y(), target_m.y()) - kBefore_m,
-       std::max(entry_m.y(), target_m.y()) + kBehind_m, z - kHalfHeight_m, z + kHalfHeight_m});
+  const Region region{std::min(entry_m.y(), target_m.y()) - kBefore_m,
+                      std::max(entry_m.y(), target_m.y()) + kBehind_m, z - kHalfHeight_m,
+                      z + kHalfHeight_m};
   const Midline start{entry_m, 0.0, std::nullopt};
   const double degree = std::numbers::pi / 180.0;
-  Found found = best_of(mirror, start, 0.034, 0.002, kTurn_rad, 4 * degree);
+  Found found = best_of(volume, transfer, region, start, {0.034, 0.002, kTurn_rad, 4 * degree});
   if (found.score.rank > 0.0)
-    found = best_of(mirror, found.plane, 0.0015, 0.0005, 3 * degree, degree);
+    found = best_of(volume, transfer, region, found.plane, {0.0015, 0.0005, 3 * degree, degree});
   if (!(found.score.symmetry >= kLeastSymmetry))
     return refused(core::Errc::out_of_range,
                    fmt::format("no midline found within {:.0f} mm of the entry (best symmetry "

@@ -102,23 +102,23 @@ void path_step(const float* cost, std::vector<float>& before, float* sum) {
 
 /// Sums of the path costs from four directions; those about the axis run round twice.
 Costs path_sums(const Costs& costs, int rows) {
-  Costs sums(costs.size(), 0.0f), scratch(kRadial);
+  Costs sums(costs.size(), 0.0f);
   const auto run = [&](int steps, int quiet, const auto& place) {
-    std::vector<float> before(kRadial, 0.0f);
+    std::vector<float> before(kRadial, 0.0f), scratch(kRadial);
     for (int k = 0; k < steps; ++k) {
       const std::size_t at = place(k);
       path_step(&costs[at], before, k < quiet ? scratch.data() : &sums[at]);
     }
   };
-  for (int turn = 0; turn < Fan::kRays; ++turn) {
+  tbb::parallel_for(0, Fan::kRays, [&](int turn) {
     run(rows, 0, [&](int k) { return column(k, turn); });
     run(rows, 0, [&](int k) { return column(rows - 1 - k, turn); });
-  }
-  for (int row = 0; row < rows; ++row) {
+  });
+  tbb::parallel_for(0, rows, [&](int row) {
     run(2 * Fan::kRays, Fan::kRays, [&](int k) { return column(row, k % Fan::kRays); });
     run(2 * Fan::kRays, Fan::kRays,
         [&](int k) { return column(row, Fan::kRays - 1 - k % Fan::kRays); });
-  }
+  });
   return sums;
 }
 
@@ -162,9 +162,9 @@ class FoundEnvelope final : public Envelope {
 
   double inside_m(const Vec3& p) const noexcept override { return depth(p).inside_m; }
   Depth depth(const Vec3& p) const noexcept override {
-    if (fan_.distance_m(p) >= kReach_m) return {-kReach_m, kCortex_m};
-    const Fan::Place place = fan_.place_of(p);
-    return {face_m_.near(place) - place.distance_m, cortex_m_.near(place)};
+    const auto place = fan_.place_within(kReach_m, p);
+    if (!place) return {-kReach_m, kCortex_m};
+    return {face_m_.near(*place) - place->distance_m, cortex_m_.near(*place)};
   }
   OuterFace outer_face() const override { return outer_face_of(fan_, face_m_); }
   double at(int row, int turn) const { return face_m_.at(row, turn); }
@@ -305,13 +305,14 @@ CortexProfile profile_of(const Volume& ct, const Fan& fan, int row, int turn, do
 /// The cortex's thickness on each ray; where the model fits none, its neighbours' or kCortex_m.
 std::vector<double> cortices_of(const Volume& ct, const Fan& fan,
                                 const std::vector<double>& face_m) {
-  std::vector<CortexProfile> profiles, some;
-  for (int row = 0; row < fan.rows(); ++row)
-    for (int turn = 0; turn < Fan::kRays; ++turn) {
-      profiles.push_back(profile_of(ct, fan, row, turn, face_m[profiles.size()]));
-      if (profiles.size() % kBlurFrom == 0 && fan.beside(row) && !profiles.back().values.empty())
-        some.push_back(profiles.back());
-    }
+  std::vector<CortexProfile> profiles(face_m.size()), some;
+  tbb::parallel_for(0, int(face_m.size()), [&](int ray) {
+    profiles[std::size_t(ray)] =
+        profile_of(ct, fan, ray / Fan::kRays, ray % Fan::kRays, face_m[std::size_t(ray)]);
+  });
+  for (std::size_t ray = kBlurFrom - 1; ray < profiles.size(); ray += kBlurFrom)
+    if (fan.beside(int(ray) / Fan::kRays) && !profiles[ray].values.empty())
+      some.push_back(profiles[ray]);
   std::vector<double> out(face_m.size(), std::numeric_limits<double>::quiet_NaN());
   const auto scan = cortex_scan_of(some);
   if (scan)

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 
 #include "volume/tract.hpp"
 
@@ -29,25 +30,23 @@ class Fan {
     const Vec3 out = std::cos(angle) * tract_.medial + std::sin(angle) * tract_.superior;
     return std::cos(lift) * out + std::sin(lift) * tract_.axis;
   }
-  /// From the tract, m.
-  double distance_m(const Vec3& p) const {
-    const double along = std::clamp(tract_.depth_of(p), 0.0, tract_.length_m);
-    return (p - tract_.entry_m - along * tract_.axis).norm();
-  }
-  /// Row, turn (both continuous) and distance from the tract of a point.
+  /// Row, turn (both continuous) and distance from the tract of a point; nothing where that is
+  /// `reach_m` or more.
   struct Place {
     double row, turn, distance_m;
   };
-  Place place_of(const Vec3& p) const {
+  std::optional<Place> place_within(double reach_m, const Vec3& p) const {
     const double depth = tract_.depth_of(p);
     const math::Vec2 off = tract_.offset_of(p);
     const double inside = std::clamp(depth, 0.0, tract_.length_m), over = depth - inside;
-    const double aside = off.norm();
-    const double lift = std::atan2(over, aside) / (std::numbers::pi / 2.0);  // −1 … 1
+    const double square_m2 = over * over + off.squaredNorm();
+    if (square_m2 >= reach_m * reach_m) return std::nullopt;
+    const double lift =  // −1 … 1
+        over == 0.0 ? 0.0 : std::atan2(over, off.norm()) / (std::numbers::pi / 2.0);
     const double row = kPolar + inside / tract_.length_m * (along_ - 1) + lift * kPolar;
     double turn = std::atan2(off.y(), off.x()) / (2.0 * std::numbers::pi) * kRays;
     if (turn < 0.0) turn += kRays;
-    return {row, turn, std::sqrt(over * over + aside * aside)};
+    return Place{row, turn, std::sqrt(square_m2)};
   }
   bool beside(int row) const { return row >= kPolar && row < kPolar + along_; }
   double depth_m(int row) const { return double(row - kPolar) / (along_ - 1) * tract_.length_m; }

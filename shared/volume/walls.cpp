@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
@@ -130,12 +131,16 @@ std::optional<WallFinder::Section> WallFinder::section_at(const Tract& tract, do
 }
 
 std::vector<WallFinder::Section> WallFinder::sections_of(const Tract& tract) const {
+  std::vector<double> depths_m;
+  for (double at = 0.0; at <= tract.length_m; at += kAlong_m) depths_m.push_back(at);
+  std::vector<std::optional<Section>> found(depths_m.size());
+  tbb::parallel_for(std::size_t(0), found.size(),
+                    [&](std::size_t k) { found[k] = section_at(tract, depths_m[k]); });
   std::vector<Section> sections;
   std::optional<double> enclosed_m;
-  for (double at = 0.0; at <= tract.length_m; at += kAlong_m) {
-    const auto section = section_at(tract, at);
-    if (section && !enclosed_m) enclosed_m = at;
-    if (section && at >= *enclosed_m + kPastEntry_m) sections.push_back(*section);
+  for (std::size_t k = 0; k < found.size(); ++k) {
+    if (found[k] && !enclosed_m) enclosed_m = depths_m[k];
+    if (found[k] && depths_m[k] >= *enclosed_m + kPastEntry_m) sections.push_back(*found[k]);
   }
   return sections;
 }
