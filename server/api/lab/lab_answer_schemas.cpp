@@ -115,9 +115,11 @@ Json diagnosis_schema() {
   const Json effect = object({{"id", text("identifier of the effect")},
                               {"probability", share("probability that the effect is missing")},
                               {"parameters", parameters_schema()}});
-  const Json step = object({{"model", text("the model after this step, in words")},
-                            {"rmse", figure("root mean square error of the step's model")},
-                            {"held_out_rmse", figure("the same on trials that were not fitted")}});
+  const Json step =
+      object({{"model", text("the model after this step, in words")},
+              {"rmse", figure("root mean square error of the step's model")},
+              {"held_out_rmse", figure("the same on trials that were not fitted")},
+              {"noise_floor", optional(figure("error that a true model would have"))}});
   const Json settle = object(
       {{"between", array(text("identifier of an effect"), "effects that it would distinguish")},
        {"recording", text("the recording to make")},
@@ -135,6 +137,11 @@ Json diagnosis_schema() {
   const Json base = object({{"rmse", figure("root mean square error of the supplied model")},
                             {"held_out_rmse", figure("the same on trials that were not fitted")},
                             {"noise_floor", figure("error that a true model would have")}});
+  const Json hypotheses = optional(array(
+      object({{"effects", array(text("identifier of an effect"), "none: nothing is missing")},
+              {"probability", share("its probability among all that were fitted")},
+              {"weight", share("before structures no better than a simpler one were left out")}}),
+      "structures that are left, most probable first"));
   const Json torque = object(
       {{"primary", text("name of the judged channel: tz_Nm")},
        {"verdict", text("the verdict on the torque alone")},
@@ -144,7 +151,9 @@ Json diagnosis_schema() {
        {"base", base},
        {"effects", array(effect, "effects that are missing about the probe's axis")},
        {"ranking", array(ref("RankedEffect"), "candidates about the axis, most probable first")},
-       {"steps", array(step, "fall of the torque's error as the effects are added")}});
+       {"steps", array(step, "fall of the torque's error as the effects are added")},
+       {"hypotheses", hypotheses},
+       {"rest_explained", optional(share("share of the residual that recorded signals explain"))}});
   return object(
       {{"format", text("tractus-diagnosis/1")},
        {"verdict", one_of({"complete", "missing", "partly", "unexplained"},
@@ -159,13 +168,7 @@ Json diagnosis_schema() {
        {"steps", array(step, "fall of the error as the effects are added")},
        {"confounded", array(tuple(text("identifier of an effect"), 2, "two effects"),
                             "pairs of effects that the recording cannot distinguish")},
-       {"hypotheses",
-        optional(array(
-            object({{"effects", array(text("identifier of an effect"), "none: nothing is missing")},
-                    {"probability", share("its probability among all that were fitted")},
-                    {"weight",
-                     share("before structures no better than a simpler one were left out")}}),
-            "structures that are left, most probable first"))},
+       {"hypotheses", hypotheses},
        {"settle", nullable(settle)},
        {"torque", optional(torque)},
        {"depends_on", text("signal on which an unexplained residual depends; else empty")},

@@ -48,14 +48,15 @@ FoundEffect found(const Problem& problem, const Fit& fit, const std::string& id)
 
 /// The base and then the effects in the order in which they brought most.
 std::vector<Step> steps(const Residual& residual, Selection& selection, const Diagnosis& so_far) {
-  std::vector<Step> out{{"base", so_far.base_fit.rmse, so_far.base_fit.held_out_rmse}};
+  std::vector<Step> out{
+      {"base", so_far.base_fit.rmse, so_far.base_fit.held_out_rmse, so_far.base_fit.noise_floor}};
   Structure sum;
   for (const std::string& id : selection.order()) {
     sum = plus(sum, id);
     const bool last = sum == so_far.final_fit.structure;
     const Fit fit =
         last ? so_far.final_fit : report(residual, selection.tried().at(name(sum)), true);
-    out.push_back({"+ " + id, fit.rmse, fit.held_out_rmse});
+    out.push_back({"+ " + id, fit.rmse, fit.held_out_rmse, fit.noise_floor});
   }
   return out;
 }
@@ -199,7 +200,8 @@ Result<Diagnosis> diagnose(const Problem& problem, const DiagnoseOptions& option
   }
   out.probability = stated_probability(out, rest, posterior.of_structure(final.structure));
   out.steps = named ? steps(residual, selection, out)
-                    : std::vector<Step>{{"base", out.base.rmse, out.base.held_out_rmse}};
+                    : std::vector<Step>{{"base", out.base.rmse, out.base.held_out_rmse,
+                                         out.base_fit.noise_floor}};
   if (more) out.depends_on = rest.words;
   out.dependence_explained = predicted_share(rest);
   if (!selection.refused().empty())

@@ -58,6 +58,7 @@ struct Ranked {
 struct Step {
   std::string model;  ///< "base", "+ coulomb_friction"
   double rmse = 0.0, held_out_rmse = 0.0;
+  double noise_floor = 0.0;  ///< the error that a true model of this form would have
 };
 
 /// A structure that the data leave, with what it would be then.

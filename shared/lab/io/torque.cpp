@@ -72,7 +72,8 @@ core::Result<void> add_torque(const lab::Problem& torque, const lab::Diagnosis& 
   const auto [headline, detail] = lab::sentences(found, lab::name_and_unit(primary).unit);
   const Json all = lab::to_json(found);
   Json own{{"primary", primary}, {"headline", headline}, {"detail", detail}};
-  for (const char* key : {"verdict", "probability", "base", "effects", "ranking", "steps"})
+  for (const char* key : {"verdict", "probability", "base", "effects", "ranking", "steps",
+                          "hypotheses", "rest_explained"})
     own[key] = all[key];
   const lab::Diagnosis both = joined(force, found);
   const Json of_both = lab::to_json(both);

@@ -221,7 +221,8 @@ Json to_json(const Diagnosis& d) {
   for (const Step& step : d.steps)
     out["steps"].push_back({{"model", step.model},
                             {"rmse", number(step.rmse)},
-                            {"held_out_rmse", number(step.held_out_rmse)}});
+                            {"held_out_rmse", number(step.held_out_rmse)},
+                            {"noise_floor", number(step.noise_floor)}});
   for (const auto& [a, b] : d.confounded) out["confounded"].push_back(Json{a, b});
   out["hypotheses"] = Json::array();
   for (const Hypothesis& h : d.hypotheses)

@@ -63,7 +63,7 @@ ReportContent content() {
   d.ranking = {{"coulomb_friction", 0.98, 0.06, ""},
                {"hysteresis", 0.01, 0.07, ""},
                {"inertia", 0.0, std::nullopt, "not excited: the speed hardly changes"}};
-  d.steps = {{"base", 1.97, 2.02}, {"+ coulomb_friction", 0.05, 0.06}};
+  d.steps = {{"base", 1.97, 2.02, 0.04}, {"+ coulomb_friction", 0.05, 0.06, 0.05}};
   d.confounded = {{"hysteresis", "coulomb_friction"}};
   d.discriminating_experiment = DiscriminatingExperiment{
       {"hysteresis", "coulomb_friction"}, "three small reversals at 12 mm", 0.4};
