@@ -96,29 +96,23 @@ Json no_tract_json(const cases::CarvingPlan& plan, const std::string& problem) {
 Json tract_json(const volume::Volume& ct, const volume::TransferFunction& transfer,
                 cases::CarvingPlan plan) {
   const auto asked = std::exchange(plan.breach, std::nullopt);
-  const auto placed = cases::place(ct, transfer, plan);
-  if (!placed) return refused_json(ct, transfer, plan, placed.error().what);
+  const auto found = cases::place_in_bone(ct, transfer, plan);
+  if (!found) return refused_json(ct, transfer, plan, found.error().what);
+  const auto& [placed, bone] = *found;
   Json out = no_tract_json(plan, "");
   out["problems"] = Json::array();
-  if (placed->envelope) {
-    out["warnings"] = placed->calibration.warnings;
-    out["calibration"] = calibration_json(placed->calibration);
-    out["envelope"] = envelope_json(placed->envelope->outer_face());
+  if (placed.envelope) {
+    out["warnings"] = placed.calibration.warnings;
+    out["calibration"] = calibration_json(placed.calibration);
+    out["envelope"] = envelope_json(placed.envelope->outer_face());
   }
-  out["side"] = placed->left_side() ? "left" : "right";
-  out["tract"] = tract_of(placed->tract);
-  std::optional<volume::Volume> filled;
-  if (placed->envelope) {
-    auto prepared = cases::prepared_ct(ct, transfer, *placed);
-    if (!prepared) return no_tract_json(plan, prepared.error().what);
-    filled = std::move(*prepared);
-  }
-  const volume::Volume& bone = filled ? *filled : ct;
+  out["side"] = placed.left_side() ? "left" : "right";
+  out["tract"] = tract_of(placed.tract);
   const volume::WallFinder finder(bone, transfer);
   for (std::size_t k = 0; k < volume::kWalls.size(); ++k)
-    out["walls"].push_back(wall_json(finder, placed->tract, volume::kWalls[k], placed->walls[k]));
+    out["walls"].push_back(wall_json(finder, placed.tract, volume::kWalls[k], placed.walls[k]));
   if (!asked) return out;
-  const auto breach = volume::place_breach(bone, transfer, placed->tract, *asked);
+  const auto breach = volume::place_breach(bone, transfer, placed.tract, *asked);
   if (breach)
     out["breach"] = breach_json(*breach);
   else
