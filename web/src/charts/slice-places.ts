@@ -35,7 +35,7 @@ export interface SliceBall {
 /** A brush that paints balls instead of placing a mark. */
 export interface SliceBrush {
   readonly radius_m: number;
-  readonly sign: '+' | '−';
+  readonly sign: '+' | '−' | '×';
   /** Where the arrow keys have it. */
   readonly cursor: Vec3;
   readonly onCursor: (at: Vec3) => void;

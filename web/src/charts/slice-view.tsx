@@ -68,6 +68,11 @@ function labelOf(name: string, mark: string, brush: SliceBrush | null): string {
       '{name} slice. Click or drag places the {mark}; arrow keys move it by half a millimetre, with Shift by a tenth; Page Up and Page Down change the slice.',
       { name, mark },
     );
+  if (brush.sign === '×')
+    return say(
+      '{name} slice. Click or drag removes marks; arrow keys move the brush by half a millimetre, with Shift by a tenth; Enter removes; Page Up and Page Down change the slice.',
+      { name },
+    );
   return brush.sign === '+'
     ? say(
         '{name} slice. Click or drag marks where bone is; arrow keys move the brush by half a millimetre, with Shift by a tenth; Enter paints; Page Up and Page Down change the slice.',

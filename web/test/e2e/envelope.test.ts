@@ -103,6 +103,11 @@ describe.runIf(inject('fixture'))('the envelope', () => {
     await expect.poll(shape).toBe(first);
     await page.getByRole('button', { name: 'Redo' }).click();
     await page.getByText(`${marks.length} marks on the envelope`).waitFor();
+    await page.getByRole('radio', { name: 'Remove marks here', exact: true }).check();
+    expect(await slice().getAttribute('aria-label')).toContain('removes marks');
+    await page.getByRole('slider', { name: 'Brush radius' }).fill('1.5');
+    await page.mouse.click(x, y); // touches what lies within 1.5 mm and a mark's 2 mm, one a millimetre: the first four
+    await page.getByText(`${marks.length - 4} marks on the envelope`).waitFor();
     await page.getByRole('button', { name: 'Remove all marks' }).click();
     await page.getByText('0 marks on the envelope').waitFor();
   });

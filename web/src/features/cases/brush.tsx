@@ -3,9 +3,12 @@ import { say } from '@/language';
 import { Button } from '@/ui';
 import { formatLength, metre } from '@/units';
 import styles from './cases.module.css';
-import { kBrushes, kMostMarks, type Tool } from './plan';
+import { kBrushes, kMostMarks, type Brush, type Tool } from './plan';
 
 const kRadius_mm = { least: 1, most: 8, step: 0.5 } as const;
+
+const nameOf = (brush: Brush) =>
+  ({ bone: say('Bone here'), no_bone: say('No bone here'), erase: say('Remove marks here') })[brush];
 
 /** The brushes that correct the envelope: what they paint, how large they are, and how to take all marks back. */
 export function BrushFields({
@@ -31,7 +34,7 @@ export function BrushFields({
           <label key={brush} className={styles.choose}>
             <input type="radio" name="end" checked={chosen === brush} onChange={() => onChoose(brush)} />
             <span className={styles.sign} data-brush={brush} aria-hidden="true" />
-            {brush === 'bone' ? say('Bone here') : say('No bone here')}
+            {nameOf(brush)}
           </label>
         ))}
       </div>

@@ -107,7 +107,17 @@ function Workbench({ volume, block }: { readonly volume: SourceVolume; readonly 
             focus={focus}
             onFocus={setFocus}
             onPlace={place}
-            onPaint={(mark, first) => step({ kind: 'paint', mark, passing: !first })}
+            onBrush={(brush, at_m, first) =>
+              step(
+                brush === 'erase'
+                  ? { kind: 'erase', at_m, radius_m: brush_m, passing: !first }
+                  : {
+                      kind: 'paint',
+                      mark: { at_m: [...at_m], radius_m: brush_m, bone: brush === 'bone' },
+                      passing: !first,
+                    },
+              )
+            }
           />
         </Card>
         <div className={styles.pair}>

@@ -119,6 +119,19 @@ describe('marks of the envelope', () => {
     expect(removed.plan.marks).toEqual([]);
     expect(draw(removed, { kind: 'undo' }).plan.marks).toEqual([kMark]);
   });
+  it('go one by one where they are erased, and come back with the stroke', () => {
+    const far: EnvelopeMark = { ...kMark, at_m: [0.0561, 0.2001, -0.061] };
+    const both = paint(paint(empty, false), false, far);
+    const erase = (drawing: Drawing, x_m: number, passing: boolean) =>
+      draw(drawing, { kind: 'erase', at_m: [x_m, 0.2001, -0.061], radius_m: 0.002, passing });
+    const between = erase(both, 0.05105, false); // 5.05 mm from each: 3 + 2 mm do not touch
+    expect(between.plan.marks).toEqual([kMark, far]);
+    const one = erase(both, 0.0509, false);
+    expect(one.plan.marks).toEqual([far]);
+    const stroke = erase(one, 0.055, true);
+    expect(stroke.plan.marks).toEqual([]);
+    expect(draw(stroke, { kind: 'undo' }).plan.marks).toEqual([kMark, far]);
+  });
   it('are no more than the server takes', () => {
     let drawing = empty;
     for (let i = 0; i <= kMostMarks; ++i) drawing = paint(drawing, i > 0);

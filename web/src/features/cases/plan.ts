@@ -3,9 +3,11 @@ import { kWalls, type NewCase, type TractRequest, type Vec3 } from '@/api';
 
 export type WallName = (typeof kWalls)[number];
 export type End = 'entry' | 'target';
-/** What a click in a slice does: it places an end of the tract, or paints a mark. */
-export type Tool = End | 'bone' | 'no_bone';
-export const kBrushes = ['bone', 'no_bone'] as const;
+/** What a brush does: it marks bone, or no bone, or takes marks away. */
+export const kBrushes = ['bone', 'no_bone', 'erase'] as const;
+export type Brush = (typeof kBrushes)[number];
+/** What a click in a slice does: it places an end of the tract, or uses a brush. */
+export type Tool = End | Brush;
 
 export interface Breach {
   readonly wall: WallName;
@@ -54,6 +56,12 @@ export type Step =
       readonly mark: EnvelopeMark;
       /** Part of a drag: no step of its own. */ readonly passing?: boolean;
     }
+  | {
+      /** Takes every mark away that this ball touches. */ readonly kind: 'erase';
+      readonly at_m: Vec3;
+      readonly radius_m: number;
+      /** Part of a drag: no step of its own. */ readonly passing?: boolean;
+    }
   | { readonly kind: 'undo' }
   | { readonly kind: 'redo' };
 
@@ -71,6 +79,12 @@ export function draw(drawing: Drawing, step: Step): Drawing {
       return plan.marks.length >= kMostMarks
         ? drawing
         : draw(drawing, { kind: 'change', to: { marks: [...plan.marks, step.mark] }, passing: step.passing ?? false });
+    case 'erase': {
+      const touched = ({ at_m, radius_m }: EnvelopeMark) =>
+        Math.hypot(...at_m.map((value, axis) => value - (step.at_m[axis] ?? 0))) < radius_m + step.radius_m;
+      const marks = plan.marks.filter((mark) => !touched(mark));
+      return draw(drawing, { kind: 'change', to: { marks }, passing: step.passing ?? false });
+    }
     case 'undo': {
       const before = past.at(-1);
       return before ? { plan: before, past: past.slice(0, -1), future: [plan, ...future] } : drawing;

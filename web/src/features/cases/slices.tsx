@@ -14,7 +14,7 @@ import { cutLines, normalOf, SliceView, type SliceBall, type SliceMark, type Sli
 import { marked, say } from '@/language';
 import { Notice } from '@/ui';
 import styles from './cases.module.css';
-import type { End, EnvelopeMark, Plan, Tool } from './plan';
+import { kBrushes, type Brush, type End, type EnvelopeMark, type Plan, type Tool } from './plan';
 
 const kPlanes: readonly { plane: SlicePlane; name: string; axis: 0 | 1 | 2; ends: readonly [string, string] }[] = [
   { plane: 'axial', name: marked('Axial'), axis: 2, ends: [marked('feet'), marked('head')] },
@@ -83,10 +83,11 @@ interface Props {
   readonly onFocus: (at: Vec3) => void;
   readonly onPlace: (end: End, at: Vec3, done: boolean) => void;
   /** `first`: a stroke of the brush begins. */
-  readonly onPaint: (mark: EnvelopeMark, first: boolean) => void;
+  readonly onBrush: (brush: Brush, at_m: Vec3, first: boolean) => void;
 }
 
 const signOf = (bone: boolean) => (bone ? '+' : '−');
+const kSigns = { bone: '+', no_bone: '−', erase: '×' } as const;
 const ballOf = ({ at_m, radius_m, bone }: EnvelopeMark): SliceBall => ({ at: at_m, radius_m, sign: signOf(bone) });
 
 /** Where the slice that is shown cuts the envelope. */
@@ -111,7 +112,7 @@ function OnePlane({
   focus,
   onFocus,
   onPlace,
-  onPaint,
+  onBrush,
 }: Props & {
   readonly where: Placed;
   readonly low: Vec3;
@@ -124,8 +125,7 @@ function OnePlane({
   const query = useQuery(sliceQuery(volume, plane, at, window));
   const envelope = found?.envelope ?? null;
   const outline = useMemo(() => outlineOf(envelope, query.data), [envelope, query.data]);
-  const bone = tool === 'bone';
-  const painting = bone || tool === 'no_bone';
+  const brush = kBrushes.find((one) => one === tool);
   return (
     <div>
       {query.isError ? (
@@ -142,17 +142,17 @@ function OnePlane({
         to_m={high[axis]}
         ends={[say(ends[0]), say(ends[1])]}
         marks={marks}
-        chosen={painting ? '' : tool}
+        chosen={brush ? '' : tool}
         outline={outline}
         balls={balls}
         brush={
-          painting
+          brush
             ? {
                 radius_m: brush_m,
-                sign: signOf(bone),
+                sign: kSigns[brush],
                 cursor: focus,
                 onCursor: onFocus,
-                onPaint: (place, first) => onPaint({ at_m: [...place], radius_m: brush_m, bone }, first),
+                onPaint: (place, first) => onBrush(brush, [...place], first),
               }
             : null
         }
