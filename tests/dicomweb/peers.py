@@ -6,6 +6,7 @@ import ssl
 import subprocess
 import threading
 import time
+import urllib.error
 import urllib.request
 from pathlib import Path
 
@@ -33,7 +34,7 @@ class Orthanc:
         self.settings.write_text(json.dumps({
             "Name": "test", "StorageDirectory": str(self.folder), "IndexDirectory": str(self.folder), "HttpPort": self.port,
             "DicomServerEnabled": False, "RemoteAccessAllowed": False, "AuthenticationEnabled": True, "RegisteredUsers": {USER: PASSWORD},
-            "Plugins": [str(PLUGIN)], "DicomWeb": {"Enable": True, "Root": "/dicom-web/"}}))
+            "Plugins": [str(PLUGIN)], "DicomWeb": {"Enable": True, "Root": "/dicom-web/", "StowMaxInstances": 0, "StowMaxSize": 0}}))
         self.start()
 
     def start(self):
@@ -41,8 +42,9 @@ class Orthanc:
             self.process = subprocess.Popen(["Orthanc", str(self.settings)], stdout=log, stderr=log, preexec_fn=ends_with_us)
         wait_until(self.answers, 30, "Orthanc answers")
 
-    def ask(self, path, data=None, headers=None):
-        asked = urllib.request.Request(f"http://127.0.0.1:{self.port}{path}", data, {"Authorization": basic(USER, PASSWORD)} | (headers or {}))
+    def ask(self, path, data=None, headers=None, method=None):
+        asked = urllib.request.Request(f"http://127.0.0.1:{self.port}{path}", data, {"Authorization": basic(USER, PASSWORD)} | (headers or {}),
+                                       method=method)
         with urllib.request.urlopen(asked, timeout=30) as answer:
             return answer.headers.get("Content-Type", ""), answer.read()
 
@@ -55,6 +57,17 @@ class Orthanc:
     def store(self, files):
         for file in files:
             self.ask("/instances", file)
+
+    def send(self, series_uid, base, token):
+        """Sends a series by STOW-RS, whole in one request; the status and what Orthanc says of it."""
+        self.ask("/dicom-web/servers/tractus", json.dumps({"Url": base, "HttpHeaders": {"Authorization": f"Bearer {token}"}}).encode(),
+                 method="PUT")
+        _, known = self.ask("/tools/find", json.dumps({"Level": "Series", "Query": {"SeriesInstanceUID": series_uid}}).encode())
+        wish = json.dumps({"Resources": json.loads(known), "Synchronous": True}).encode()
+        try:
+            return 200, self.ask("/dicom-web/servers/tractus/stow", wish)[1]
+        except urllib.error.HTTPError as refused:
+            return refused.code, refused.read()
 
     def stop(self):
         self.process.terminate()

@@ -3,7 +3,7 @@
 
     tests/dicomweb/pulled.py --bin build/release/bin
 
-A study is found, its series are listed, one becomes a volume, without the patient; then the PACS refuses, is down, and lies: each
+A study is found, its series are listed, one becomes a volume, without the patient; Orthanc sends one; then the PACS refuses, is down, lies: each
 is one line, and nothing is changed by it. Exit 0: all is as it should be. It takes a minute."""
 import argparse
 import io
@@ -21,6 +21,7 @@ sys.path[:0] = [str(HERE.parent / "attack"), str(HERE.parent / "notifications")]
 import series  # noqa: E402
 from peers import PASSWORD, TOKEN, USER, Front, Orthanc  # noqa: E402
 from receivers import certificate  # noqa: E402
+from wire import Client  # noqa: E402
 from world import Setup, World  # noqa: E402
 
 FINE, COARSE, OTHER = "2.25.314159", "2.25.314160", "2.25.314161"  # series: two of one study, one of another
@@ -219,6 +220,51 @@ def killed(world, front):
     front.lie = ""
 
 
+def token_of(world, name, *scopes):
+    """An API token of the person, and the client that has it."""
+    made = world.people[name].must("POST", "/tokens", {
+        "name": "pacs", "scopes": list(scopes), "expires_utc_us": int((time.time() + 86400) * 1e6), "password": world.passwords[name]})
+    return made["token"], Client(world.target, {"Authorization": f"Bearer {made['token']}"})
+
+
+def body_of(files, boundary="b"):
+    parts = [f"--{boundary}\r\nContent-Type: application/dicom\r\n\r\n".encode() + file + b"\r\n" for file in files]
+    return b"".join(parts) + f"--{boundary}--\r\n".encode()
+
+
+def sent(world, orthanc):
+    """A PACS that sends by itself."""
+    world.people["fay"] = world.account("fay", "faculty")
+    token, fay = token_of(world, "fay", "volumes:write")
+    base = f"http://127.0.0.1:{world.server.port}/api/v1/dicom-web/"
+    status, said = orthanc.send(OTHER, base, token)
+    check(status == 200, f"Orthanc sends a series by STOW-RS: {said[:200]}")
+    volume = world.admin.must("GET", "/volumes")["volumes"][0]
+    check((volume["state"], volume["dims"], volume["made_by"], volume["source"]) == ("held", [64, 64, 8], "fay", "sent by STOW-RS"),
+          f"which is held for review: {volume['name']}")
+    things = Things(world)
+    status, said = orthanc.send(OTHER, base, token)
+    check(status != 200 and things.unchanged(), f"and is not taken a second time: {said[:200]}")
+    one = series.series("2.25.99", 4, side=16, spacing_mm=1.0, thickness_mm=2.0, description="", number_of_series=1)
+    kind = 'multipart/related; type="application/dicom"; boundary=b'
+    answer = fay.ask("POST", "/dicom-web/studies", body_of(one), kind=kind)
+    told = [item["00081155"]["Value"][0] for item in answer.json()["00081199"]["Value"]] if answer.status == 200 else []
+    check(told == [f"2.25.99.{number}" for number in (1, 2, 3, 4)] and answer.header("content-type") == "application/dicom+json",
+          f"the answer names the instances, as the standard says: {answer}")
+    things = Things(world)
+    two = one[:2] + series.series("2.25.98", 2, side=16, spacing_mm=1.0, thickness_mm=2.0, description="", number_of_series=2)
+    for what, sent_kind, body in (("two series", kind, body_of(two)), ("no multipart", "application/dicom", one[0]), ("no DICOM", kind, body_of([b"hello"])),
+                                  ("another boundary", kind, body_of(one, "c")), ("half a body", kind, body_of(one)[:3000]), ("nothing", kind, b"")):
+        answer = fay.ask("POST", "/dicom-web/studies", body, kind=sent_kind)
+        check(answer.status == 400 and things.unchanged(), f"{what} is refused: {answer}")
+    check(token_of(world, "fay", "volumes:read")[1].ask("POST", "/dicom-web/studies", body_of(one), kind=kind).status == 403, "a token needs the scope")
+    check(fay.ask("POST", "/pacs/studies", {"patient_id": "x"}).status == 403, "and no token searches the PACS")
+    world.server.stop()
+    left = found_in_files(world.folder, NAMING[:4])
+    check(not left, f"the patient stands in no file of the server: {left}")
+    world.server.start()
+
+
 def run(setup):
     orthanc = Orthanc(setup.folder)
     try:
@@ -230,6 +276,8 @@ def run(setup):
             guarded(world, faculty)
         with served(setup, "wrong", orthanc.base, user=USER, password_file="wrong") as world:
             refusals(world.admin, Things(world), f"the PACS at {orthanc.base} answered 401: check its user and password")
+        with World(setup) as world:
+            sent(world, orthanc)
         pem, key = certificate(setup.folder)
         front = Front(orthanc, (pem, key))
         with served(setup, "stranger", front.base, token_file=TOKEN) as world:

@@ -60,7 +60,7 @@ Result<std::string> PacsImports::volume_from(const std::stop_token& stop,
             import));
   import.state = PacsImportState::reading;
   note(import);
-  const auto taken = TRY(take_in_series(backend_, series, scratch.path()));
+  const auto taken = TRY(take_in_series(backend_, series, scratch.path(), Turn::wait));
   store::AuditedAction act = wish.act;
   act.at_utc_us = backend_.now_utc_us();
   const store::AuditScope acting(std::move(act));

@@ -28,13 +28,17 @@ Result<ImportedVolume> kept(const Backend& backend, const fs::path& folder, core
                         std::move(answer["report"])};
 }
 
-/// Held while a volume is read.
-std::mutex& one_at_a_time() {
-  static std::mutex mutex;
-  return mutex;
+/// To be held while a volume is read.
+Result<std::unique_lock<std::mutex>> turn_to_import(Turn turn) {
+  static std::mutex one_at_a_time;
+  std::unique_lock held(one_at_a_time, std::defer_lock);
+  if (turn == Turn::wait) held.lock();
+  if (turn == Turn::now && !held.try_lock())
+    return Error{Errc::unavailable, "another volume is being read: try again in a minute"};
+  return held;
 }
 
-/// @pre one_at_a_time is held
+/// @pre it is this import's turn
 Result<ImportedVolume> imported(const Backend& backend, const fs::path& upload,
                                 const fs::path& folder) {
   const volume_io::UidKey key = backend.secrets.uid_key();
@@ -46,8 +50,7 @@ Result<ImportedVolume> imported(const Backend& backend, const fs::path& upload,
 }  // namespace
 
 Result<ImportedVolume> take_in(const Call& call) {
-  const std::unique_lock held(one_at_a_time(), std::try_to_lock);
-  if (!held) return Error{Errc::unavailable, "another volume is being read: try again in a minute"};
+  const auto held = TRY(turn_to_import(Turn::now));
   // On the data's disk: what a server that dies in the midst leaves there, the next start removes.
   auto scratch = TRY(core::ScratchFolder::make(call.backend.scratch->folder() / "volume"));
   const auto upload = TRY(body_in(call, scratch.path(), "upload"));
@@ -55,8 +58,8 @@ Result<ImportedVolume> take_in(const Call& call) {
 }
 
 Result<ImportedVolume> take_in_series(const Backend& backend, const fs::path& series,
-                                      const fs::path& scratch) {
-  const std::unique_lock held(one_at_a_time());
+                                      const fs::path& scratch, Turn turn) {
+  const auto held = TRY(turn_to_import(turn));
   return imported(backend, series, scratch);
 }
 

@@ -19,11 +19,12 @@ struct ImportedVolume {
 /// stores the volume among the objects. Only one import runs at a time, because it needs the memory
 /// of a volume. Errors: unavailable while another import runs; those of jobs::import_volume.
 core::Result<ImportedVolume> take_in(const Call& call);
-/// The same of a folder of DICOM files of one series, in `scratch`; waits while another import
-/// runs.
+/// Whether to wait while another import runs.
+enum class Turn { now, wait };
+/// The same of a folder of DICOM files of one series, in `scratch`.
 core::Result<ImportedVolume> take_in_series(const Backend& backend,
                                             const std::filesystem::path& series,
-                                            const std::filesystem::path& scratch);
+                                            const std::filesystem::path& scratch, Turn turn);
 
 /// How a person names a volume, and who it is.
 struct VolumeWish {
