@@ -31,6 +31,7 @@ using TakeVolume = std::function<core::Result<core::Json>(const std::filesystem:
 
 class Oidc;
 class Notifier;
+class PacsImports;
 
 struct Backend {
   store::Store& store;
@@ -57,6 +58,7 @@ struct Backend {
   TrialViews trial_views{};
   PlatformKeys platform_keys{};
   Notifier* notifier = nullptr;  ///< null: nobody is told of events by e-mail or webhook
+  PacsImports* pacs = nullptr;   ///< null: no PACS is stated
 };
 
 }  // namespace tractus::api

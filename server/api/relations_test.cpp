@@ -292,10 +292,11 @@ TEST_F(Relations, ARouteThatChangesSomethingNamesEveryEndOrIsOfOneObject) {
       "makeEnrolmentCode", "enrolStation", "revokeStation", "stopStation", "limitStation",
       // what all who may call these have all of: volumes, cases, scenarios, models, measurements,
       // rubrics
-      "addVolume", "releaseVolume", "refuseVolume", "planTract", "certifyTract", "makeCase",
-      "retireCase", "checkScenario", "addScenario", "publishScenario", "addModel",
-      "addMeasurements", "checkEffect", "startDiagnosis", "startComparison", "startFit",
-      "stopLabRun", "publishLabRun", "addRubric",
+      "addVolume", "storeSeries", "findPacsStudies", "pacsSeries", "importPacsSeries",
+      "releaseVolume", "refuseVolume", "planTract", "certifyTract", "makeCase", "retireCase",
+      "checkScenario", "addScenario", "publishScenario", "addModel", "addMeasurements",
+      "checkEffect", "startDiagnosis", "startComparison", "startFit", "stopLabRun", "publishLabRun",
+      "addRubric",
       // released trials alone (db/store/cohort/released.hpp)
       "lockAnalysisPlan", "analyseCohort",
       // the server's own

@@ -9,7 +9,10 @@
 #include <memory>
 #include <mutex>
 
+#include "core/bytes.hpp"
+#include "core/file.hpp"
 #include "core/require.hpp"
+#include "core/try.hpp"
 
 namespace tractus {
 namespace api {
@@ -67,11 +70,44 @@ curl_socket_t open_allowed(void* allowed, curlsocktype, curl_sockaddr* address) 
   return ::socket(address->family, address->socktype | SOCK_CLOEXEC, address->protocol);
 }
 
+/// An answer on its way, and why it was ended.
+struct Transfer {
+  const Fetch& what;
+  CURL* curl;
+  Fetched got = {};
+  std::optional<Error> ended = {};
+};
+
+void read_head(Transfer& transfer) {
+  long status = 0;
+  curl_easy_getinfo(transfer.curl, CURLINFO_RESPONSE_CODE, &status);
+  const char* type = nullptr;
+  curl_easy_getinfo(transfer.curl, CURLINFO_CONTENT_TYPE, &type);
+  transfer.got.status = static_cast<int>(status);
+  transfer.got.content_type = type ? type : "";
+}
+
 std::size_t take_bytes(char* bytes, std::size_t one, std::size_t count, void* into) {
-  auto& out = *static_cast<std::string*>(into);
-  if (out.size() + one * count > kMost_bytes) return 0;
-  out.append(bytes, one * count);
-  return one * count;
+  auto& transfer = *static_cast<Transfer*>(into);
+  const std::string_view piece(bytes, one * count);
+  read_head(transfer);
+  std::string& body = transfer.got.body;
+  if (transfer.what.take && transfer.got.status == 200) {
+    const auto taken = transfer.what.take(transfer.got, piece);
+    if (!taken) transfer.ended = taken.error();
+  } else if (body.size() + piece.size() > kMost_bytes) {
+    transfer.ended = Error{Errc::too_large, "the answer of " + transfer.what.who + " is too long"};
+  } else {
+    body.append(piece);
+  }
+  return transfer.ended ? 0 : piece.size();
+}
+
+int ask_may_go_on(void* of, curl_off_t, curl_off_t, curl_off_t, curl_off_t) {
+  auto& transfer = *static_cast<Transfer*>(of);
+  if (!transfer.what.may_go_on || transfer.what.may_go_on()) return 0;
+  transfer.ended = Error{Errc::cancelled, "the transfer from " + transfer.what.who + " was ended"};
+  return 1;
 }
 
 }  // namespace
@@ -133,6 +169,34 @@ void limit_networks(CURL* curl, const http::Networks& networks) {
   curl_easy_setopt(curl, CURLOPT_OPENSOCKETDATA, const_cast<http::Networks*>(&networks));
 }
 
+/// Where from, how long, and into what.
+void set_transfer(CURL* curl, const Fetch& what, Transfer& transfer) {
+  curl_easy_setopt(curl, CURLOPT_URL, what.url.c_str());
+  curl_easy_setopt(curl, CURLOPT_PROTOCOLS_STR, "http,https");
+  curl_easy_setopt(curl, CURLOPT_FOLLOWLOCATION, 0L);
+  curl_easy_setopt(curl, CURLOPT_TIMEOUT_MS, static_cast<long>(what.patience.count()));
+  curl_easy_setopt(curl, CURLOPT_NOSIGNAL, 1L);
+  curl_easy_setopt(curl, CURLOPT_WRITEFUNCTION, take_bytes);
+  curl_easy_setopt(curl, CURLOPT_WRITEDATA, &transfer);
+  curl_easy_setopt(curl, CURLOPT_XFERINFOFUNCTION, ask_may_go_on);
+  curl_easy_setopt(curl, CURLOPT_XFERINFODATA, &transfer);
+  curl_easy_setopt(curl, CURLOPT_NOPROGRESS, what.may_go_on ? 0L : 1L);
+  if (what.silence.count() > 0) {
+    curl_easy_setopt(curl, CURLOPT_CONNECTTIMEOUT, static_cast<long>(what.silence.count()));
+    curl_easy_setopt(curl, CURLOPT_LOW_SPEED_TIME, static_cast<long>(what.silence.count()));
+    curl_easy_setopt(curl, CURLOPT_LOW_SPEED_LIMIT, 1024L);
+  }
+}
+
+void set_credentials(CURL* curl, const Fetch& what) {
+  if (what.networks) limit_networks(curl, *what.networks);
+  if (!what.user.empty()) {
+    curl_easy_setopt(curl, CURLOPT_USERNAME, what.user.c_str());
+    curl_easy_setopt(curl, CURLOPT_PASSWORD, what.password.c_str());
+  }
+  if (!what.authority.empty()) curl_easy_setopt(curl, CURLOPT_CAINFO, what.authority.c_str());
+}
+
 }  // namespace
 
 Result<Fetched> fetch(const Fetch& what) {
@@ -143,35 +207,29 @@ Result<Fetched> fetch(const Fetch& what) {
                                       ": https is expected"};
   const std::unique_ptr<CURL, Cleans> handle(curl_easy_init());
   CURL* curl = handle.get();
-  Fetched out;
+  Transfer transfer{what, curl};
   const auto body = posted(what);
   const Headers headers = header_list(what.headers);
-  curl_easy_setopt(curl, CURLOPT_URL, what.url.c_str());
-  curl_easy_setopt(curl, CURLOPT_PROTOCOLS_STR, "http,https");
-  curl_easy_setopt(curl, CURLOPT_FOLLOWLOCATION, 0L);
-  curl_easy_setopt(curl, CURLOPT_TIMEOUT_MS, static_cast<long>(what.patience.count()));
-  curl_easy_setopt(curl, CURLOPT_NOSIGNAL, 1L);
-  curl_easy_setopt(curl, CURLOPT_WRITEFUNCTION, take_bytes);
-  curl_easy_setopt(curl, CURLOPT_WRITEDATA, &out.body);
+  set_transfer(curl, what, transfer);
   if (body) {
     curl_easy_setopt(curl, CURLOPT_POSTFIELDSIZE, static_cast<long>(body->size()));
     curl_easy_setopt(curl, CURLOPT_POSTFIELDS, body->c_str());
   }
   if (headers) curl_easy_setopt(curl, CURLOPT_HTTPHEADER, headers.get());
-  if (what.networks) limit_networks(curl, *what.networks);
-  if (!what.user.empty()) {
-    curl_easy_setopt(curl, CURLOPT_USERNAME, what.user.c_str());
-    curl_easy_setopt(curl, CURLOPT_PASSWORD, what.password.c_str());
-  }
-  if (!what.authority.empty()) curl_easy_setopt(curl, CURLOPT_CAINFO, what.authority.c_str());
+  set_credentials(curl, what);
   const CURLcode got = curl_easy_perform(curl);
-  if (got == CURLE_WRITE_ERROR)
-    return Error{Errc::too_large, "the answer of " + what.who + " is too long"};
+  if (transfer.ended) return *transfer.ended;
   if (got != CURLE_OK)
     return Error{Errc::unavailable, what.who + " does not answer: " + curl_easy_strerror(got)};
-  long status = 0;
-  curl_easy_getinfo(curl, CURLINFO_RESPONSE_CODE, &status);
-  out.status = static_cast<int>(status);
+  read_head(transfer);
+  return std::move(transfer.got);
+}
+
+Result<std::string> secret_in(const std::filesystem::path& path) {
+  const auto held = TRY(core::read_file(path, 4096));
+  std::string out(core::text_of(held));
+  while (!out.empty() && out.back() <= ' ') out.pop_back();
+  if (out.empty()) return Error{Errc::bad_input, path.string() + ": is empty"};
   return out;
 }
 

@@ -1,11 +1,13 @@
-/// Requests of the server to another server: an OpenID Connect provider, a learning platform, a webhook.
+/// Requests of the server to another server: an OpenID Connect provider, a learning platform, a webhook, a PACS.
 #pragma once
 
 #include <chrono>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/result.hpp"
@@ -15,7 +17,8 @@ namespace tractus::api {
 
 struct Fetched {
   int status = 0;
-  std::string body;
+  std::string content_type = {};  ///< as the other server states it
+  std::string body = {};
 };
 
 struct Fetch {
@@ -30,11 +33,20 @@ struct Fetch {
   /// checked when it is connected to, so that a name cannot lead elsewhere later.
   std::optional<http::Networks> networks = {};
   std::string who = "the provider";  ///< the other server, for messages
+  /// If given: gets the body of an answer of status 200 piece by piece, without the limit of 1 MiB;
+  /// Fetched::body stays empty. Its error ends the transfer and is that of `fetch`.
+  std::function<core::Result<void>(const Fetched& head, std::string_view piece)> take = {};
+  std::function<bool()> may_go_on = {};  ///< if given: asked every second at least; false ends it
+  std::chrono::seconds silence{0};  ///< if given: less than 1 KiB/s over this time is no answer
 };
 
 /// Reads at most 1 MiB within `patience`, without redirects. Errors: bad_input (the address is not
-/// allowed), unavailable (no answer), too_large.
+/// allowed), unavailable (no answer), too_large, cancelled (`may_go_on`), those of `take`.
 core::Result<Fetched> fetch(const Fetch& what);
+
+/// The first line of a file with a password, token or other secret. Errors: those of reading;
+/// bad_input if it is empty.
+core::Result<std::string> secret_in(const std::filesystem::path& path);
 
 /// Whether the address is https, or http to a loopback address.
 bool is_safe_address(const std::string& url);

@@ -21,6 +21,7 @@
 #include "server/api/refusals.hpp"
 #include "server/api/service.hpp"
 #include "server/api/trials/uploads.hpp"
+#include "server/api/volumes/pacs_imports.hpp"
 #include "server/app/anchoring.hpp"
 #include "server/app/backups.hpp"
 #include "server/app/freed_memory.hpp"
@@ -260,6 +261,8 @@ core::Result<void> serve(const ServeOptions& given) {
     auto settings = TRY(api::read_oidc_settings(*options.oidc));
     oidc_settings = std::move(settings);
   }
+  std::optional<api::PacsSettings> pacs_settings;
+  if (options.pacs) pacs_settings = TRY(api::read_pacs_settings(*options.pacs));
   api::NotifierSettings told{.networks = options.webhook_networks};
   if (options.mail) told.mail = TRY(api::read_mail_settings(*options.mail));
   const auto pseudonym_key = TRY(pseudonym_key_of(
@@ -312,6 +315,8 @@ core::Result<void> serve(const ServeOptions& given) {
     if (oidc_settings->base.empty()) oidc_settings->base = address_of(options, server.port());
     backend.oidc = &oidc.emplace(std::move(*oidc_settings));
   }
+  std::optional<api::PacsImports> pacs;
+  if (pacs_settings) backend.pacs = &pacs.emplace(backend, std::move(*pacs_settings));
   told.base = told.mail      ? told.mail->base
               : backend.oidc ? backend.oidc->settings().base
                              : address_of(options, server.port());
@@ -328,7 +333,9 @@ core::Result<void> serve(const ServeOptions& given) {
     log_line({{"what", "serving"}, {"tls", options.http.tls.has_value()}});
     server.run();
     leaving = nullptr;
-    (*runner)->end();  // what a job writes at last is anchored too
+    backend.pacs = nullptr;
+    pacs.reset();
+    (*runner)->end();  // what an import or a job writes at last is anchored too
   }
   log_line({{"what", "stopped"}});
   return {};

@@ -25,6 +25,7 @@ struct ServeOptions {
   std::chrono::milliseconds job_lease{30'000};  ///< see jobs::Runner
   std::optional<std::filesystem::path> oidc;    ///< settings of a provider of identities
   std::optional<std::filesystem::path> mail;    ///< settings of the mail server
+  std::optional<std::filesystem::path> pacs;    ///< settings of the PACS
   http::Networks webhook_networks = {};         ///< private networks whose webhooks are called
   /// The key of exports' pseudonyms; none: DATA/pseudonyms/key.
   std::optional<std::filesystem::path> pseudonym_key;

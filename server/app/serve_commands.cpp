@@ -60,6 +60,9 @@ Run serve_command(CLI::App& command) {
   const auto mail = std::make_shared<std::filesystem::path>();
   command.add_option("--mail", *mail,
                      "Settings file of the mail server by which people are told of events");
+  const auto pacs = std::make_shared<std::filesystem::path>();
+  command.add_option("--pacs", *pacs,
+                     "Settings file of a PACS from which people import volumes (DICOMweb)");
   const auto webhook_networks = std::make_shared<std::vector<std::string>>();
   command.add_option("--webhook-network", *webhook_networks,
                      "Private address or network (ADDRESS/BITS) whose webhooks, learning platforms "
@@ -95,6 +98,7 @@ Run serve_command(CLI::App& command) {
     if (!web->empty()) options->web = *web;
     if (!oidc->empty()) options->oidc = *oidc;
     if (!mail->empty()) options->mail = *mail;
+    if (!pacs->empty()) options->pacs = *pacs;
     if (!webhook_networks->empty()) {
       auto networks = http::Networks::parse(*webhook_networks);
       if (!networks)

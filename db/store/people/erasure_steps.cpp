@@ -53,6 +53,7 @@ std::vector<ErasureStep> account_steps() {
       {"oidc_subjects", {}, "delete from oidc_subjects where account_id = :account"},
       {"group_accounts", {}, "delete from group_accounts where account_id = :account"},
       {"saved_views", {}, "delete from saved_views where account_id = :account"},
+      {"pacs_imports", {}, "delete from pacs_imports where account_id = :account"},
       {"api_token_uses",
        {},
        "delete from api_token_uses where token_id in (select id from api_tokens where account_id = "

@@ -57,6 +57,7 @@ const std::vector<TableDecision>& table_decisions() {
       {"volumes", "objects", removed, kept, "recordings", kPseudonym},
       {"volumes", "volumes", changed, changed, "volumes that the person brought in or released",
        kNameOfMaker},
+      {"volumes", "pacs_imports", removed, removed, "imports from the PACS", ""},
       {"cases", "cases", none, none, "", kNobody},
       {"cases", "case_parts", none, none, "", kNobody},
       {"cases", "case_makings", changed, changed, "cases that the person had made", kNameOfMaker},

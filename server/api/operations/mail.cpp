@@ -8,7 +8,6 @@
 #include <memory>
 
 #include "core/bytes.hpp"
-#include "core/file.hpp"
 #include "core/json.hpp"
 #include "core/require.hpp"
 #include "core/try.hpp"
@@ -29,14 +28,6 @@ std::string lower(std::string text) {
 
 std::string domain_of(const std::string& address) {
   return lower(address.substr(address.rfind('@') + 1));
-}
-
-core::Result<std::string> secret_in(const std::filesystem::path& path) {
-  const auto held = TRY(core::read_file(path, 4096));
-  std::string out(core::text_of(held));
-  while (!out.empty() && out.back() <= ' ') out.pop_back();
-  if (out.empty()) return core::Error{core::Errc::bad_input, path.string() + ": is empty"};
-  return out;
 }
 
 std::vector<std::string> domains_field(core::Fields& fields) {

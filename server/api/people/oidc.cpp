@@ -1,7 +1,6 @@
 #include "server/api/people/oidc.hpp"
 
 #include "core/bytes.hpp"
-#include "core/file.hpp"
 #include "core/try.hpp"
 #include "server/api/web_fetch.hpp"
 
@@ -49,12 +48,7 @@ Result<OidcSettings> read_oidc_settings(const std::filesystem::path& path) {
   TRY(fields.done());
   const auto folder = path.parent_path();
   if (!out.authority.empty()) out.authority = folder / out.authority;
-  auto held = TRY(core::read_file(folder / secret, 4096));
-  out.client_secret = core::text_of(held);
-  while (!out.client_secret.empty() && out.client_secret.back() <= ' ')
-    out.client_secret.pop_back();
-  if (out.client_secret.empty())
-    return Error{Errc::bad_input, (folder / secret).string() + ": is empty"};
+  out.client_secret = TRY(secret_in(folder / secret));
   return out;
 }
 

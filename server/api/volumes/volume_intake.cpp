@@ -4,6 +4,7 @@
 
 #include "core/file.hpp"
 #include "core/try.hpp"
+#include "db/store/cases/cases.hpp"
 #include "server/api/backend.hpp"
 #include "server/jobs/import_volume.hpp"
 
@@ -16,6 +17,8 @@ using core::Errc;
 using core::Error;
 using core::Result;
 
+constexpr std::size_t kMaxVolumeName = 200, kMaxSource = 1000;
+
 Result<ImportedVolume> kept(const Backend& backend, const fs::path& folder, core::Json answer) {
   const fs::path file = folder / jobs::kTakenVolume;
   auto sha256 = TRY(store::file_sha256(file));
@@ -25,21 +28,59 @@ Result<ImportedVolume> kept(const Backend& backend, const fs::path& folder, core
                         std::move(answer["report"])};
 }
 
+/// To be held while a volume is read.
+Result<std::unique_lock<std::mutex>> turn_to_import(Turn turn) {
+  static std::mutex one_at_a_time;
+  std::unique_lock held(one_at_a_time, std::defer_lock);
+  if (turn == Turn::wait) held.lock();
+  if (turn == Turn::now && !held.try_lock())
+    return Error{Errc::unavailable, "another volume is being read: try again in a minute"};
+  return held;
+}
+
+/// @pre it is this import's turn
+Result<ImportedVolume> imported(const Backend& backend, const fs::path& upload,
+                                const fs::path& folder) {
+  const volume_io::UidKey key = backend.secrets.uid_key();
+  auto answer = TRY(backend.import_volume ? backend.import_volume(upload, folder, key)
+                                          : jobs::import_volume(upload, folder, key));
+  return kept(backend, folder, std::move(answer));
+}
+
 }  // namespace
 
 Result<ImportedVolume> take_in(const Call& call) {
-  static std::mutex one_at_a_time;
-  const std::unique_lock held(one_at_a_time, std::try_to_lock);
-  if (!held) return Error{Errc::unavailable, "another volume is being read: try again in a minute"};
+  const auto held = TRY(turn_to_import(Turn::now));
   // On the data's disk: what a server that dies in the midst leaves there, the next start removes.
   auto scratch = TRY(core::ScratchFolder::make(call.backend.scratch->folder() / "volume"));
-  const auto file = TRY(body_in(call, scratch.path(), "upload"));
-  const fs::path& upload = file;
-  const volume_io::UidKey key = call.backend.secrets.uid_key();
-  auto answer =
-      TRY(call.backend.import_volume ? call.backend.import_volume(upload, scratch.path(), key)
-                                     : jobs::import_volume(upload, scratch.path(), key));
-  return kept(call.backend, scratch.path(), std::move(answer));
+  const auto upload = TRY(body_in(call, scratch.path(), "upload"));
+  return imported(call.backend, upload, scratch.path());
+}
+
+Result<ImportedVolume> take_in_series(const Backend& backend, const fs::path& series,
+                                      const fs::path& scratch, Turn turn) {
+  const auto held = TRY(turn_to_import(turn));
+  return imported(backend, series, scratch);
+}
+
+Result<store::VolumeRecord> keep_volume(const Backend& backend, const ImportedVolume& taken,
+                                        const VolumeWish& wish) {
+  store::VolumeRecord v;
+  v.id = core::new_id();
+  v.name = wish.name.substr(0, kMaxVolumeName);
+  v.source = wish.source.substr(0, kMaxSource);
+  v.sha256 = taken.sha256;
+  v.size_bytes = taken.size_bytes;
+  v.facts = taken.facts.dump();
+  v.report = taken.report.dump();
+  v.made_utc_us = backend.now_utc_us();
+  v.made_by = wish.by;
+  v.made_by_id = wish.by_id;
+  TRY(backend.store.write([&](store::Writing& tx) -> Result<void> {
+    TRY(store::add_object(tx, v.sha256, v.size_bytes, v.made_utc_us));
+    return store::add_volume(tx, v);
+  }));
+  return v;
 }
 
 }  // namespace api

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/json.hpp"
+#include "db/store/volumes/volumes.hpp"
 #include "server/api/route.hpp"
 
 namespace tractus::api {
@@ -18,5 +19,20 @@ struct ImportedVolume {
 /// stores the volume among the objects. Only one import runs at a time, because it needs the memory
 /// of a volume. Errors: unavailable while another import runs; those of jobs::import_volume.
 core::Result<ImportedVolume> take_in(const Call& call);
+/// Whether to wait while another import runs.
+enum class Turn { now, wait };
+/// The same of a folder of DICOM files of one series, in `scratch`.
+core::Result<ImportedVolume> take_in_series(const Backend& backend,
+                                            const std::filesystem::path& series,
+                                            const std::filesystem::path& scratch, Turn turn);
+
+/// How a person names a volume, and who it is.
+struct VolumeWish {
+  std::string name, source;  ///< cut to the lengths that a record has
+  std::string by, by_id;     ///< name and id of the account
+};
+/// Adds the record of an imported volume, which is held. Errors: conflict if its voxels are here.
+core::Result<store::VolumeRecord> keep_volume(const Backend& backend, const ImportedVolume& taken,
+                                              const VolumeWish& wish);
 
 }  // namespace tractus::api

@@ -1,9 +1,7 @@
 /// CT volumes that people bring in: held until somebody has looked at them, then ready for cases.
 #include <fmt/format.h>
 
-#include "core/file.hpp"
 #include "core/try.hpp"
-#include "db/store/cases/cases.hpp"
 #include "db/store/volumes/volumes.hpp"
 #include "server/api/backend.hpp"
 #include "server/api/schema.hpp"
@@ -20,7 +18,7 @@ using core::Json;
 using core::Result;
 using store::VolumeState;
 
-constexpr std::size_t kMaxVolumeName = 200, kMaxSource = 1000, kMaxVolumeReason = 1000;
+constexpr std::size_t kMaxVolumeReason = 1000;
 
 Json volume_json(const store::VolumeRecord& v) {
   Json out{{"id", v.id}, {"name", v.name}, {"source", v.source}, {"state", name(v.state)}};
@@ -71,22 +69,12 @@ Result<http::Response> one_volume(const Call& call) {
 }
 
 Result<http::Response> add_volume(const Call& call) {
-  auto taken = TRY(take_in(call));
-  store::VolumeRecord v;
-  v.id = core::new_id();
-  v.name = call.text("name").substr(0, kMaxVolumeName);
-  v.source = call.text("source").substr(0, kMaxSource);
-  v.sha256 = taken.sha256;
-  v.size_bytes = taken.size_bytes;
-  v.facts = taken.facts.dump();
-  v.report = taken.report.dump();
-  v.made_utc_us = call.backend.now_utc_us();
-  v.made_by = call.caller.name;
-  v.made_by_id = call.caller.id;
-  TRY(call.backend.store.write([&](store::Writing& tx) -> Result<void> {
-    TRY(store::add_object(tx, v.sha256, v.size_bytes, v.made_utc_us));
-    return store::add_volume(tx, v);
-  }));
+  const auto taken = TRY(take_in(call));
+  const auto v = TRY(keep_volume(call.backend, taken,
+                                 {.name = call.text("name"),
+                                  .source = call.text("source"),
+                                  .by = call.caller.name,
+                                  .by_id = call.caller.id}));
   return json_response(volume_json(v), 201);
 }
 

@@ -35,6 +35,7 @@ export type * from './criteria-schemas';
 export * from './rating-queries';
 export type * from './rating-schemas';
 export * from './volume-queries';
+export * from './pacs-queries';
 export * from './token-queries';
 export * from './notification-queries';
 export * from './learning-queries';

@@ -8,6 +8,7 @@ import type {
   expertBoundSchema,
   passingSchema,
 } from './criteria-schemas';
+import type { pacsImportSchema, pacsSchema, pacsSeriesListSchema, pacsStudiesSchema } from './pacs-queries';
 import type { agreementSchema, ratingRequestListSchema, rubricListSchema, trialRatingsSchema } from './rating-schemas';
 import type {
   assignmentListSchema,
@@ -57,6 +58,10 @@ export interface TeachingAgreed {
   readonly ratingRequests: Takes<typeof ratingRequestListSchema, Served['RatingRequestList']>;
   readonly agreement: Takes<typeof agreementSchema, Served['RatingAgreements']>;
   readonly volumes: Takes<typeof sourceVolumeListSchema, Served['VolumeList']>;
+  readonly pacs: Takes<typeof pacsSchema, Served['Pacs']>;
+  readonly pacsStudies: Takes<typeof pacsStudiesSchema, Served['PacsStudies']>;
+  readonly pacsSeries: Takes<typeof pacsSeriesListSchema, Served['PacsSeriesList']>;
+  readonly pacsImport: Takes<typeof pacsImportSchema, Served['PacsImport']>;
 }
 
 export const kTeachingAgreed: TeachingAgreed = {
@@ -85,4 +90,8 @@ export const kTeachingAgreed: TeachingAgreed = {
   ratingRequests: true,
   agreement: true,
   volumes: true,
+  pacs: true,
+  pacsStudies: true,
+  pacsSeries: true,
+  pacsImport: true,
 };

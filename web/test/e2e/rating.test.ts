@@ -90,6 +90,30 @@ async function volumes(page: Page, check: Check): Promise<void> {
   expect((zoomed?.width ?? 0) / box.width).toBeCloseTo(4, 1);
 }
 
+async function fromPacs(page: Page, check: Check): Promise<void> {
+  await page.goto('/volumes');
+  const card = page.getByRole('region', { name: 'From a PACS' });
+  const search = card.getByRole('button', { name: 'Search' });
+  expect(await search.isDisabled()).toBe(true);
+  await card.getByLabel('Patient’s id').fill('PID-4711');
+  await search.click();
+  await card.getByRole('button', { name: 'Show its series' }).click();
+  await card.getByRole('button', { name: 'Choose series 3' }).waitFor();
+  expect(await card.getByRole('row', { name: /bone 1\.0/ }).innerText()).toMatch(/CT\s+180\s+0\.49.mm\s+1\.00.mm/);
+  await card.getByRole('button', { name: 'Choose series 2' }).click();
+  await check('pacs');
+  const begin = card.getByRole('button', { name: 'Import' });
+  expect(await begin.isDisabled()).toBe(true);
+  await card.getByLabel('Name, without a patient’s name').fill('L3');
+  await begin.click();
+  await card.getByText(/The server fetches the series: 90 files, 47\.3.MB/).waitFor();
+  await card.getByRole('link', { name: 'Look at the volume' }).waitFor();
+  await check('pacs-imported');
+  await card.getByLabel('Patient’s id').fill('nobody');
+  await search.click();
+  await card.getByText('No study fits.').waitFor();
+}
+
 describe.skipIf(!inject('fixture')).each([
   { width: 1440, dark: false, look: 0 },
   { width: 820, dark: true, look: 1 },
@@ -113,6 +137,7 @@ describe.skipIf(!inject('fixture')).each([
     await section(page, check);
     await rubrics(page, check, look);
     await volumes(page, check);
+    await fromPacs(page, check);
     expect(faults).toEqual([]);
     await context.close();
   }, 240_000);

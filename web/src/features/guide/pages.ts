@@ -101,6 +101,13 @@ export const kPages: readonly GuidePage[] = [
         to: { href: '/volumes', name: marked('Volumes') },
       },
       {
+        title: marked('Or import it from the PACS'),
+        text: marked(
+          'Where the hospital’s PACS is connected, search for a study by patient’s id, day or description, compare its series by spacing and slice thickness, and import one. It is treated as an uploaded volume.',
+        ),
+        to: { href: '/volumes', name: marked('Volumes') },
+      },
+      {
         title: marked('Create a case'),
         text: marked(
           'Place the entry and the target of the tract in the slices of a CT. Choose the breached wall and the depth of the breach; the page shows the position of the breach and the thickness of the wall. Alternatively, let the trainee drill the channel and then palpate it. For the probing rig, define the layers and walls of a scenario.',

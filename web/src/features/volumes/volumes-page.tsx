@@ -6,6 +6,7 @@ import { marked, say } from '@/language';
 import { Badge, Button, Card, DataTable, DropZone, Field, Notice, Progress, useTitle, type Dropped } from '@/ui';
 import { formatBytes, formatCount, formatDateTime, formatShare, share } from '@/units';
 import { nameFrom, pack } from './pack';
+import { FromPacs } from './pacs';
 import styles from './volumes.module.css';
 
 const kTones = { held: 'warn', released: 'good', refused: 'bad' } as const;
@@ -148,6 +149,7 @@ export function VolumesPage() {
         />
       </Card>
       <Upload />
+      <FromPacs />
     </div>
   );
 }
