@@ -44,8 +44,8 @@ struct Fetch {
 /// allowed), unavailable (no answer), too_large, cancelled (`may_go_on`), those of `take`.
 core::Result<Fetched> fetch(const Fetch& what);
 
-/// The first line of a file with a password, token or other secret. Errors: those of reading;
-/// bad_input if it is empty.
+/// A password, token or other secret: what a file holds, without white space at its end. Errors:
+/// those of reading; bad_input if it is empty.
 core::Result<std::string> secret_in(const std::filesystem::path& path);
 
 /// Whether the address is https, or http to a loopback address.

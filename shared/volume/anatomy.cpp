@@ -36,10 +36,10 @@ struct Score {
   double rank = 0.0;      // the same times Σ 2αα′
 };
 
-/// Opacities on lines across a plane, of the planes that run beside it: every point is measured once.
+/// Opacities at a grid of points about a plane. All planes parallel to it are scored from the same points.
 class Lines {
  public:
-  /// @param reach_m  how far beside `middle` a plane is scored
+  /// @param reach_m  distance of the farthest plane that is scored from `middle`
   Lines(const Volume& volume, const TransferFunction& transfer, const Region& region,
         const Midline& middle, double reach_m, double grid_m)
       : grid_m_(grid_m),
@@ -58,7 +58,7 @@ class Lines {
       }
   }
 
-  /// Of the plane `aside` steps to the left of the middle one.
+  /// Of the plane `aside` grid steps to the patient's left of the middle one.
   Score score(int aside) const {
     const int step = int(std::lround(kStep_m / grid_m_));
     const int pairs = int(kReach_m / kStep_m);
@@ -87,9 +87,10 @@ struct Found {
   Score score;
 };
 
-/// Planes beside and turned against a middle one.
+/// Planes that are tried about a middle one: shifted and turned by so much to either side, in steps.
 struct Planes {
-  double aside_m, aside_step_m;  // to either side; whole steps, of 2 mm or a whole part of 1 mm
+  double aside_m,
+      aside_step_m;  // the step is 2 mm or divides 1 mm: then all points lie on one grid
   double turn_rad, turn_step_rad;
 };
 
