@@ -244,17 +244,14 @@ TEST(Surgeon, LetsGoOfAStageThatReturnsToTheEntryAndStartsThere) {
   world.surgeon = true;
   machine.set_world(world);
   yield(machine, 8000.0, 6000);
-  const double deep_m = machine.reading().x_m;
-  ASSERT_GT(deep_m, 0.02);
-  for (const int off_ms : {50, 500}) {  // sooner than its reaction time, and later
-    run(machine, kOff, off_ms);
-    double most_N = 0.0;
-    while (machine.reading().x_m > (off_ms == 50 ? 0.5 * deep_m : 0.0005)) {
-      run(machine, moving(-0.02), 1);
-      most_N = std::max(most_N, machine.reading().force_N);
-    }
-    EXPECT_LT(most_N, 5.0) << off_ms;
+  ASSERT_GT(machine.reading().x_m, 0.02);
+  run(machine, kOff, 500);  // longer than its reaction time
+  double most_N = 0.0;
+  while (machine.reading().x_m > 0.0005) {
+    run(machine, moving(-0.02), 1);
+    most_N = std::max(most_N, machine.reading().force_N);
   }
+  EXPECT_LT(most_N, 5.0);
   run(machine, moving(0.0), 1000);
   EXPECT_GT(machine.reading().force_N, 10.0);  // 3000 N/m, 6 mm/s: at work again
 }

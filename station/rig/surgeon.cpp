@@ -42,11 +42,10 @@ void Surgeon::begin(double x_m) {
   startled_at_s_ = -1.0;
   // A stage that is enabled away from the entry may be on its way back: a person looks first.
   resting_until_s_ = x_m > kEntry_m ? p_.reaction_s : -1.0;
-  push_N_ = 0.0;
 }
 
 void Surgeon::step(double x_m, double v_m_s, double omega_rad_s, bool enabled, double dt_s) {
-  if (enabled && (!at_work_ || off_s_ > 0.0)) begin(x_m);
+  if (enabled && !at_work_) begin(x_m);
   off_s_ = enabled ? 0.0 : off_s_ + dt_s;
   at_work_ = enabled || (at_work_ && off_s_ < p_.reaction_s);
   if (!at_work_) {
