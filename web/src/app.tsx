@@ -118,6 +118,8 @@ function Pages() {
 function Framed({ children }: { readonly children: ReactNode }) {
   const chooseLanguage = useChooseLanguage();
   useAccountLanguage();
+  // The role's menu makes the header higher: drawn before the role is known, it would push the page down.
+  if (useQuery(sessionQuery).isPending) return <Loading />;
   return (
     <Shell home={<Brand />} account={<Account />} onLanguage={chooseLanguage}>
       {children}

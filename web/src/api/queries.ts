@@ -43,6 +43,7 @@ export const sessionQuery = queryOptions({
     }
   },
   staleTime: 5 * 60_000,
+  retryOnMount: false, // after a failure a person asks again, by the button
 });
 
 /** `code`: the one-time code of an account that asks for one. */

@@ -1,7 +1,7 @@
 /** Coming in, being thrown out, and addresses that are typed. */
 import type { Browser } from 'playwright-core';
 import { afterAll, beforeAll, expect, inject, it } from 'vitest';
-import { assessedTrial, launch, signIn, visit } from './browser';
+import { assessedTrial, jumped, launch, signIn, visit } from './browser';
 
 let browser: Browser;
 beforeAll(async () => {
@@ -106,5 +106,19 @@ it('the first key leads over the header to the content', async () => {
   await page.keyboard.press('Tab');
   const focused = await page.evaluate(() => document.activeElement?.closest('main') !== null);
   expect(focused).toBe(true);
+  await context.close();
+});
+
+it('nothing jumps when the server is slow to say who is signed in', async () => {
+  const { context, page } = await visit(browser);
+  await signIn(page);
+  await page.route(/\/api\/v1\/session$/, async (route) => {
+    await new Promise((resolve) => setTimeout(resolve, 900));
+    await route.continue();
+  });
+  await page.goto('/network/retention');
+  await page.getByRole('heading', { name: 'Rules now' }).waitFor();
+  const { layoutShift, layoutShiftOf } = await jumped(page);
+  expect(layoutShift, layoutShiftOf.join(', ')).toBeLessThan(0.02);
   await context.close();
 });
