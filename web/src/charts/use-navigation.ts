@@ -20,18 +20,22 @@ export function useWheel(place: RefObject<HTMLElement | null>, view: View): void
     const element = place.current;
     if (!element) return;
     const onWheel = (event: WheelEvent) => {
-      const { range, duration_s, onRange } = latest.current;
+      const { range, duration_s } = latest.current;
+      // The next turn of the wheel may come before this one is drawn, and goes on from it.
+      const show = (next: Range) => {
+        event.preventDefault();
+        latest.current = { ...latest.current, range: next };
+        latest.current.onRange(next);
+      };
       const over = (event.target as Element).closest?.('.uplot')?.querySelector('.u-over');
       if (!over) return;
       const box = over.getBoundingClientRect();
       const sideways = event.shiftKey ? event.deltaY || event.deltaX : event.deltaX;
       if (event.shiftKey || Math.abs(event.deltaX) > Math.abs(event.deltaY)) {
-        event.preventDefault();
-        onRange(panned(range, sideways / box.width, duration_s));
+        show(panned(range, sideways / box.width, duration_s));
       } else if (event.ctrlKey || event.metaKey || element.contains(document.activeElement)) {
-        event.preventDefault();
         const place01 = Math.min(Math.max((event.clientX - box.left) / box.width, 0), 1);
-        onRange(
+        show(
           zoomed(
             range,
             Math.exp(event.deltaY * kWheelZoom),
