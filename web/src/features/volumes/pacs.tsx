@@ -15,12 +15,15 @@ import {
 } from '@/api';
 import { marked, say } from '@/language';
 import { Button, Card, DataTable, Field, Notice } from '@/ui';
-import { formatBytes, formatCount, formatLength, kNone, type Metre } from '@/units';
+import { formatBytes, formatCount, formatDate, kNone, utcMicroseconds } from '@/units';
+import { SeriesTable } from './series-table';
 import styles from './volumes.module.css';
 
 const kStudiesOfPage = 50;
 const counted = (value: number | null) => (value === null ? kNone : formatCount(value));
-const long = (value: Metre | null) => (value === null ? kNone : formatLength(value, 2));
+/** A day as the PACS writes it, 2024-03-14, in the reader's words. */
+const day = (date: string | null) =>
+  date === null ? kNone : formatDate(utcMicroseconds(1000 * Date.parse(`${date}T12:00`)));
 
 interface Chosen {
   readonly study: PacsStudy;
@@ -122,42 +125,7 @@ function SeriesOf({ study }: { readonly study: PacsStudy }) {
     );
   return (
     <>
-      <DataTable<PacsSeries>
-        caption={say('Series of the study')}
-        minWidth={640}
-        rows={query.data?.series}
-        keyOf={({ uid }) => uid}
-        empty={say('This study has no series.')}
-        columns={[
-          {
-            name: marked('Series'),
-            by: ({ number }) => number,
-            cell: ({ number, description }) => `${counted(number)} ${description}`,
-          },
-          { name: marked('Modality'), by: ({ modality }) => modality, cell: ({ modality }) => modality },
-          { name: marked('Files'), by: ({ files }) => files, cell: ({ files }) => counted(files), number: true },
-          {
-            name: marked('Pixel spacing'),
-            by: ({ row_spacing_m }) => row_spacing_m,
-            cell: ({ row_spacing_m }) => long(row_spacing_m),
-            number: true,
-          },
-          {
-            name: marked('Slice thickness'),
-            by: ({ thickness_m }) => thickness_m,
-            cell: ({ thickness_m }) => long(thickness_m),
-            number: true,
-          },
-          {
-            name: marked('Choose'),
-            cell: (one) => (
-              <Button aria-pressed={one.uid === chosen?.uid} onClick={() => setChosen(one)}>
-                {say('Choose series {number}', { number: counted(one.number) })}
-              </Button>
-            ),
-          },
-        ]}
-      />
+      <SeriesTable series={query.data?.series} chosen={chosen?.uid ?? null} onChoose={setChosen} />
       {chosen ? <Import key={chosen.uid} study={study} series={chosen} /> : null}
     </>
   );
@@ -243,7 +211,7 @@ export function FromPacs() {
             empty={say('No study fits.')}
             pageSize={kStudiesOfPage}
             columns={[
-              { name: marked('Day'), by: ({ date }) => date, cell: ({ date }) => date ?? kNone },
+              { name: marked('Day'), by: ({ date }) => date, cell: ({ date }) => day(date) },
               {
                 name: marked('Description'),
                 by: ({ description }) => description,

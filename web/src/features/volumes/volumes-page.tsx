@@ -5,8 +5,10 @@ import { addVolume, sourceVolumesQuery, type SourceVolume } from '@/api';
 import { marked, say } from '@/language';
 import { Badge, Button, Card, DataTable, DropZone, Field, Notice, Progress, useTitle, type Dropped } from '@/ui';
 import { formatBytes, formatCount, formatDateTime, formatShare, share } from '@/units';
+import { dicomSeries, type DicomSeries } from './dicom-series';
 import { nameFrom, pack } from './pack';
 import { FromPacs } from './pacs';
+import { SeriesChoice } from './series-choice';
 import styles from './volumes.module.css';
 
 const kTones = { held: 'warn', released: 'good', refused: 'bad' } as const;
@@ -20,13 +22,17 @@ function Upload() {
   const client = useQueryClient();
   const [, go] = useLocation();
   const [files, setFiles] = useState<readonly Dropped[]>([]);
+  const [chosen, setChosen] = useState<DicomSeries | null>(null);
+  const read = useMutation({ mutationFn: (dropped: readonly Dropped[]) => dicomSeries(dropped) });
+  const several = (read.data?.length ?? 0) > 1;
+  const parts = several ? (chosen?.slices ?? []) : files;
   const [name, setName] = useState('');
   const [source, setSource] = useState('');
   const [gone, setGone] = useState<number | null>(null);
   const sent = useMutation({
     mutationFn: async () => {
       setGone(null);
-      const file = await pack(files);
+      const file = await pack(parts);
       return addVolume(name.trim(), source.trim(), file, setGone);
     },
     onSuccess: async (made) => {
@@ -34,7 +40,7 @@ function Upload() {
       go(`/volumes/${made.id}`);
     },
   });
-  const size = files.reduce((sum, { file }) => sum + file.size, 0);
+  const size = parts.reduce((sum, { file }) => sum + file.size, 0);
   const phase =
     gone === null
       ? say('Packing the files…')
@@ -49,9 +55,11 @@ function Upload() {
           folder={say('A folder with the slices of one DICOM series')}
           files={say('A zip of one DICOM series, or a NIfTI, NRRD or .tvol file')}
           choose={say('Choose file')}
-          busy={sent.isPending ? phase : null}
+          busy={sent.isPending ? phase : read.isPending ? say('Reading the files…') : null}
           onFiles={(dropped) => {
             setFiles(dropped);
+            setChosen(null);
+            read.mutate(dropped);
             setName(nameFrom(dropped));
             sent.reset();
           }}
@@ -61,10 +69,13 @@ function Upload() {
                 'Drop a CT here: a folder or a zip of one DICOM series, or a file in NIfTI (.nii, .nii.gz), NRRD or .tvol, zipped or not.',
               )
             : say('{count, plural, one {# file} other {# files}}, {size}', {
-                count: files.length,
+                count: parts.length,
                 size: formatBytes(size),
               })}
         </DropZone>
+        {several && read.data ? (
+          <SeriesChoice series={read.data} chosen={chosen?.uid ?? null} onChoose={setChosen} />
+        ) : null}
         {sent.isPending && gone !== null ? <Progress done={gone} of={1} label={say('Upload')} /> : null}
         {files.length > 0 ? (
           <div className={styles.form}>
@@ -80,7 +91,11 @@ function Upload() {
               maxLength={400}
               onChange={(event) => setSource(event.target.value)}
             />
-            <Button look="solid" disabled={name.trim() === '' || sent.isPending} onClick={() => sent.mutate()}>
+            <Button
+              look="solid"
+              disabled={name.trim() === '' || parts.length === 0 || read.isPending || sent.isPending}
+              onClick={() => sent.mutate()}
+            >
               {say('Upload')}
             </Button>
           </div>
