@@ -22,7 +22,9 @@ it('refuses nothing at all', async () => {
   await expect(pack([])).rejects.toThrow('No files');
 });
 
-it('takes a name from the file or the folder', () => {
+it('takes a name from a volume file, never from a folder or an archive, which may name a patient', () => {
   expect(nameFrom([file('./L3.nrrd')])).toBe('L3');
-  expect(nameFrom([file('spine/a'), file('spine/b')])).toBe('spine');
+  expect(nameFrom([file('Doe^Jane/a'), file('Doe^Jane/b')])).toBe('');
+  expect(nameFrom([file('Doe^Jane/a')])).toBe('');
+  expect(nameFrom([file('Doe_Jane.zip')])).toBe('');
 });

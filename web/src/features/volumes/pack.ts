@@ -7,12 +7,11 @@ const kVolume = /\.(zip|nii|nii\.gz|nrrd|tvol)$/i;
 
 const isHidden = (path: string) => path.split('/').some((part) => /^\.[^./]/.test(part) || part === '__MACOSX');
 
-/** A name without the ending; the folder's, where a folder was dropped. */
+/** A name to begin with: that of a volume file. Folders and archives of DICOM files are often named after the patient. */
 export function nameFrom(dropped: readonly Dropped[]): string {
-  const [first] = dropped;
-  if (!first) return '';
-  const parts = first.path.split('/').filter((part) => part !== '' && part !== '.');
-  return dropped.length === 1 || parts.length < 2 ? first.file.name.replace(kVolume, '') : (parts[0] ?? '');
+  const [only] = dropped;
+  if (!only || dropped.length > 1 || !kVolume.test(only.file.name) || /\.zip$/i.test(only.file.name)) return '';
+  return only.file.name.replace(kVolume, '');
 }
 
 /** Errors: a sentence for the person who dropped them. */

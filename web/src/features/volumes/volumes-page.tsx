@@ -40,7 +40,8 @@ function Upload() {
       go(`/volumes/${made.id}`);
     },
   });
-  const size = parts.reduce((sum, { file }) => sum + file.size, 0);
+  const counted = parts.length > 0 ? parts : files;
+  const size = counted.reduce((sum, { file }) => sum + file.size, 0);
   const phase =
     gone === null
       ? say('Packing the files…')
@@ -69,7 +70,7 @@ function Upload() {
                 'Drop a CT here: a folder or a zip of one DICOM series, or a file in NIfTI (.nii, .nii.gz), NRRD or .tvol, zipped or not.',
               )
             : say('{count, plural, one {# file} other {# files}}, {size}', {
-                count: parts.length,
+                count: counted.length,
                 size: formatBytes(size),
               })}
         </DropZone>

@@ -66,6 +66,7 @@ describe.skipIf(bin === undefined)('a folder with two series', () => {
       });
     expect(grey[1]).toBeGreaterThan((grey[0] ?? 0) + 40); // 10 a pixel of 1400 in the window: 56 of 255
     expect(grey[2]).toBeGreaterThan(grey[0] ?? 0);
+    expect(await page.getByLabel('Name, without a patient’s name').first().inputValue()).toBe('');
     await page.getByLabel('Name, without a patient’s name').first().fill('simulated spine');
     expect(await page.getByRole('button', { name: 'Upload', exact: true }).isDisabled()).toBe(true);
     await page.screenshot({ path: `${kShots}volumes-series.png`, fullPage: true });
