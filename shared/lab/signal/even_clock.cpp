@@ -30,11 +30,15 @@ double usual_spacing_s(std::span<const double> t_s) {
   return sum / count;
 }
 
+/// A rounded stamp lies within half a step of its clock, and the clock's spacing is estimated.
+constexpr double kFarthest = 0.55;
+
 struct Clock {
   double start_s, spacing_s;
 };
 
-/// By least squares over the number of each sample.
+/// Its spacing by least squares over the number of each sample; its start so that the stamps lie as far before it as
+/// after it. Their mean will not do: stamps half-way between two multiples may all be rounded to one side.
 Clock fitted(std::span<const double> t_s, std::span<const double> number) {
   const double n = double(t_s.size());
   double mean_t = 0.0, mean_k = 0.0, products = 0.0, squares = 0.0;
@@ -44,7 +48,12 @@ Clock fitted(std::span<const double> t_s, std::span<const double> number) {
     squares += (number[i] - mean_k) * (number[i] - mean_k);
   }
   const double spacing_s = products / squares;
-  return {mean_t - spacing_s * mean_k, spacing_s};
+  double first = 1e300, last = -1e300;
+  for (std::size_t i = 0; i < t_s.size(); ++i) {
+    const double start_s = t_s[i] - spacing_s * number[i];
+    first = std::min(first, start_s), last = std::max(last, start_s);
+  }
+  return {0.5 * (first + last), spacing_s};
 }
 
 }  // namespace
@@ -60,7 +69,7 @@ void restore_even_clock(std::vector<double>& t_s) {
     number[k] = number[k - 1] + std::max(1.0, std::round((t_s[k] - t_s[k - 1]) / clock.spacing_s));
   clock = fitted(t_s, number);
   for (std::size_t k = 0; k < t_s.size(); ++k)
-    if (std::abs(clock.start_s + number[k] * clock.spacing_s - t_s[k]) > 0.51 * step_s) return;
+    if (std::abs(clock.start_s + number[k] * clock.spacing_s - t_s[k]) > kFarthest * step_s) return;
   for (std::size_t k = 0; k < t_s.size(); ++k) t_s[k] = clock.start_s + number[k] * clock.spacing_s;
 }
 

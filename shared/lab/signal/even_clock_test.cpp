@@ -26,6 +26,16 @@ TEST(EvenClock, IsFoundBehindStampsRoundedToATenthOfAMillisecondWithRowsLost) {
   EXPECT_LT(farthest(t_s, truth), 2e-6);
 }
 
+TEST(EvenClock, IsFoundWhereStampsHalfWayBetweenTwoStepsAreAllRoundedDown) {
+  std::vector<double> truth, t_s;
+  for (int k = 0; k < 32000; ++k)
+    if (k % 397 > 3) truth.push_back(k / 4000.0);
+  for (const double t : truth) t_s.push_back(std::ceil(t / 1e-4 - 0.5 - 1e-6) * 1e-4);
+  restore_even_clock(t_s);
+  for (std::size_t k = 1; k < truth.size(); ++k)
+    ASSERT_NEAR(t_s[k] - t_s[0], truth[k] - truth[0], 4e-6) << k;  // the rounding's are 5e-5
+}
+
 TEST(EvenClock, LeavesAClockThatJittersAsItIs) {
   std::mt19937_64 random(3);
   std::normal_distribution<> deviation_s(0.0, 3e-5);
