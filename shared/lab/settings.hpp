@@ -335,20 +335,12 @@ struct DiagnosisSettings {
   std::size_t few_trials = 4;
   /// Signals that predict the rest must do so in this share of the trials. Derived: 8 of 10 have a chance of 5 % by luck.
   double most_trials = 0.8;
-  /// An error so many times the noise floor is not noise, even if no recorded signal predicts it. Tuned.
-  double far_above_floor = 2.0;
   /// So many effects at once more often imitate one that is in no catalogue than they are right. Tuned.
   std::size_t imitating_effects = 3;
   /// Effects are named only if at most this share of what there was to explain is left. Tuned.
   double most_left = 0.25;
   /// Probability that so many only imitate. Tuned.
   double imitation = 0.6;
-  /// Logarithm of the odds that more is missing than a model has whose error is at the floor. Tuned.
-  double more_log_odds = -4.0;
-  /// And by how much it grows with the logarithm of the error over the floor. Tuned.
-  double more_per_log_error = 6.0;
-  /// And with the share of the error's mean square that signals predict. Tuned.
-  double more_per_share = 10.0;
 };
 
 /// A drift that follows the motion is no sensor's.
@@ -420,6 +412,17 @@ struct ComparisonSettings {
   std::size_t most_for_quantiles = 200'000;
 };
 
+/// Log odds that a model lacks a material effect, linear in what it leaves. Fitted by tests/hidden_physics/benchmark/calibrate.py
+/// to the answers to the first 110 probing and 22 palpation sets of the development generation "january".
+struct MoreMissingOdds {
+  /// Where the held-out error is at the noise floor and no signal predicts any of it. Tuned.
+  double at_floor;
+  /// For each factor e of the error over the floor. Tuned.
+  double per_log_error;
+  /// For all of the error's mean square predicted by recorded signals. Tuned.
+  double per_share;
+};
+
 /// Thresholds of the selection on a rig, as mean squares of the whitened residual: how near to 1 a
 /// true model comes there. All tuned.
 struct SelectionThresholds {
@@ -436,6 +439,7 @@ struct SelectionThresholds {
   double observations_per_trial;
   /// A trend of which the motion's memory explains this share is no sensor's; above 1: never asked.
   double drift_r2_on_motion;
+  MoreMissingOdds more;
 };
 
 /// The lab's settings, by stage.
@@ -445,13 +449,22 @@ struct Settings {
                                          .least_gain_share = 0.12,
                                          .least_gain_of_excess = 0.004,
                                          .observations_per_trial = 12.0,
-                                         .drift_r2_on_motion = 0.45};
+                                         .drift_r2_on_motion = 0.45,
+                                         .more = {-3.0, 6.7, 9.3}};
+  SelectionThresholds torque_thresholds{.stop_below = 1.25,
+                                        .stop_if_given_below = 0.0,
+                                        .least_gain_share = 0.12,
+                                        .least_gain_of_excess = 0.004,
+                                        .observations_per_trial = 12.0,
+                                        .drift_r2_on_motion = 0.45,
+                                        .more = {-2.1, 3.0, 9.3}};
   SelectionThresholds palpation_thresholds{.stop_below = 0.9,
                                            .stop_if_given_below = 1.1,
                                            .least_gain_share = 0.01,
                                            .least_gain_of_excess = 0.0,
                                            .observations_per_trial = 60.0,
-                                           .drift_r2_on_motion = 1.01};
+                                           .drift_r2_on_motion = 1.01,
+                                           .more = {-0.8, 5.2, 9.3}};
   SmoothingSettings smoothing;
   PhasesSettings phases;
   DecimationSettings decimation;

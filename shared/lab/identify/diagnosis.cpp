@@ -114,40 +114,35 @@ double predicted_share(const ResidualDependence& rest) {
   return rest.trials_better >= kAnswer.most_trials ? rest.predictable : 0.0;
 }
 
-/// Is more left than noise: something that recorded signals predict and that is material, or an error so far above the
-/// floor that no noise explains it?
-bool more_is_missing(const ResidualDependence& rest, const Fit& fit) {
-  const double material = 1.0 - std::pow(1.0 - kSettings.selection.least_fall, 2.0);
-  return predicted_share(rest) > material ||
-         fit.held_out_rmse > kAnswer.far_above_floor * fit.noise_floor;
+/// Probability that a material effect is missing from a model, by the error over the floor and by what signals predict of
+/// it: a logistic model that was fitted to labelled answers, tests/hidden_physics/benchmark/calibrate.py.
+double probability_of_more(const Problem& problem, const ResidualDependence& rest, const Fit& fit) {
+  const MoreMissingOdds& odds = problem.selection_thresholds().more;
+  const double above = std::log(std::max(1.0, fit.held_out_rmse / fit.noise_floor));
+  return 1.0 / (1.0 + std::exp(-odds.at_floor - odds.per_log_error * above -
+                               odds.per_share * predicted_share(rest)));
 }
 
 /// Do the effects take away most of what there was to take?
 bool explain_most(const ResidualDependence& rest, const Fit& base, const Fit& fit) {
   const auto square = [](double v) { return v * v; };
-  const double after = square(fit.held_out_rmse), unpredicted = (1.0 - rest.predictable) * after;
-  const bool far = fit.held_out_rmse > kAnswer.far_above_floor * fit.noise_floor;
-  const double least = far ? std::min(unpredicted, square(fit.noise_floor)) : unpredicted;
+  const double after = square(fit.held_out_rmse),
+               least = std::min((1.0 - rest.predictable) * after, square(fit.noise_floor));
   return after - least < kAnswer.most_left * (square(base.held_out_rmse) - least);
 }
 
-/// Probability that more is missing than the model has: by the error over the floor, and by what signals predict of it.
-double probability_of_more(const ResidualDependence& rest, const Fit& fit) {
-  const double above = std::log(std::max(1.0, fit.held_out_rmse / fit.noise_floor));
-  const double odds = kAnswer.more_log_odds + kAnswer.more_per_log_error * above +
-                      kAnswer.more_per_share * predicted_share(rest);
-  return 1.0 / (1.0 + std::exp(-odds));
-}
-
-/// Probability that the answer is right as a whole.
-double stated_probability(const Diagnosis& d, const ResidualDependence& rest, double posterior) {
-  const double more =
-      std::clamp(std::max(probability_of_more(rest, d.final_fit),
-                          d.effects.size() >= kAnswer.imitating_effects ? kAnswer.imitation : 0.0),
-                 kSettings.posterior.unforeseen, 1.0 - kSettings.posterior.unforeseen);
-  return d.verdict == Verdict::partly || d.verdict == Verdict::unexplained
-             ? more
-             : posterior * (1.0 - more);
+/// Probability that the answer is right as a whole: the effects that it names, and whether more is missing.
+double stated_probability(const Diagnosis& d, double more, double posterior) {
+  if (d.effects.size() >= kAnswer.imitating_effects) more = std::max(more, kAnswer.imitation);
+  more = std::clamp(more, kSettings.posterior.unforeseen, 1.0 - kSettings.posterior.unforeseen);
+  switch (d.verdict) {
+    case Verdict::unexplained:
+      return more;
+    case Verdict::partly:
+      return posterior * more;
+    default:
+      return posterior * (1.0 - more);
+  }
 }
 
 }  // namespace
@@ -176,7 +171,7 @@ Result<Diagnosis> diagnose(const Problem& problem, const DiagnoseOptions& option
   ResidualDependence rest = residual_dependence(residual, chosen);
   out.final_fit = chosen.structure.effects.empty() ? out.base_fit : report(residual, chosen, true);
   out.base.noise_floor = std::min(out.base.noise_floor, out.final_fit.noise_floor);
-  const bool more = more_is_missing(rest, out.final_fit);
+  const bool more = probability_of_more(problem, rest, out.final_fit) > 0.5;
   const bool named = !chosen.structure.effects.empty() &&
                      (!more || explain_most(rest, out.base_fit, out.final_fit));
   const bool imitating = named && chosen.structure.effects.size() >= kAnswer.imitating_effects;
@@ -198,7 +193,8 @@ Result<Diagnosis> diagnose(const Problem& problem, const DiagnoseOptions& option
     out.effects.push_back(found(problem, out.final_fit, id));
     out.effects.back().probability = posterior.of_effect(id);
   }
-  out.probability = stated_probability(out, rest, posterior.of_structure(final.structure));
+  out.probability = stated_probability(out, probability_of_more(problem, rest, out.final_fit),
+                                       posterior.of_structure(final.structure));
   out.steps = named ? steps(residual, selection, out)
                     : std::vector<Step>{{"base", out.base.rmse, out.base.held_out_rmse,
                                          out.base_fit.noise_floor}};

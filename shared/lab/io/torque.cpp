@@ -32,11 +32,7 @@ lab::Diagnosis joined(const lab::Diagnosis& force, const lab::Diagnosis& torque)
   out.verdict = out.effects.empty() ? left ? Verdict::unexplained : Verdict::complete
                 : left              ? Verdict::partly
                                     : Verdict::missing;
-  // That all of it is right; where more is missing, that it is.
-  out.probability = !left ? force.probability * torque.probability
-                    : more(force.verdict) && more(torque.verdict)
-                        ? std::max(force.probability, torque.probability)
-                        : (more(force.verdict) ? force : torque).probability;
+  out.probability = force.probability * torque.probability;  // that all of it is right
   return out;
 }
 

@@ -44,7 +44,7 @@ class ProbingProblem final : public Problem, public FormulaTerms {
   effects::Starts starts(std::string_view effect, const Eigen::VectorXd& residual) const override;
 
   const SelectionThresholds& selection_thresholds() const override {
-    return kSettings.probing_thresholds;
+    return turns_ ? kSettings.torque_thresholds : kSettings.probing_thresholds;
   }
   Eigen::Index residual_size(int k) const override {
     return Eigen::Index(trial(k).measured_thin.size());
