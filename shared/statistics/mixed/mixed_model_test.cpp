@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <map>
+#include <random>
 #include <set>
 
 #include "statistics/golden_test.hpp"
@@ -178,6 +179,48 @@ TEST(MixedModelTest, SaysWhatCannotBeEstimated) {
   EXPECT_NE(refusal({"a", {"p", "q", "p", "q", "p", "q"}, Matrix::Zero(6, 1), {"x"}})
                 .find("the slope's column x is 0"),
             std::string::npos);
+}
+
+/// Many levels in two groupings: the second is factorised sparsely. A balanced nested design's
+/// estimates are those of its analysis of variance (Searle, Casella & McCulloch 1992, section 4.7):
+/// σ² = MS_E, τ_b² = (MS_B − MS_E)/r, τ_a² = (MS_A − MS_B)/br, se² = MS_A/abr on a − 1 df.
+TEST(MixedModelTest, BalancedNestedLevelsHaveTheEstimatesOfTheirAnalysisOfVariance) {
+  constexpr int kA = 3500, kB = 2, kR = 2, kRows = kA * kB * kR;
+  std::mt19937_64 random(3);
+  std::normal_distribution<double> normal;
+  Vector y(kRows);
+  std::vector<std::string> a(kRows), b(kRows);
+  double ms_a = 0.0, ms_b = 0.0, ms_e = 0.0;
+  std::vector<double> means;
+  for (int i = 0, row = 0; i < kA; ++i) {
+    const double own = normal(random);
+    double of_b[kB];
+    for (int j = 0; j < kB; ++j) {
+      const double both = own + 0.7 * normal(random);
+      const int first = row;
+      for (int k = 0; k < kR; ++k, ++row) {
+        y[row] = 5.0 + both + 0.5 * normal(random);
+        a[std::size_t(row)] = std::to_string(i);
+        b[std::size_t(row)] = std::to_string(i) + ":" + std::to_string(j);
+      }
+      of_b[j] = y.segment(first, kR).mean();
+      ms_e += (y.segment(first, kR).array() - of_b[j]).square().sum() / (kA * kB * (kR - 1));
+    }
+    means.push_back(0.5 * (of_b[0] + of_b[1]));
+    for (const double mean : of_b) ms_b += kR * std::pow(mean - means.back(), 2) / (kA * (kB - 1));
+  }
+  for (const double mean : means) ms_a += kB * kR * std::pow(mean - y.mean(), 2) / (kA - 1);
+  const Design design{Matrix::Ones(kRows, 1), {"(Intercept)"}, true};
+  const auto fit = mixed_model(
+      design, y,
+      {{"a", a, Matrix::Ones(kRows, 1), {"1"}}, {"a:b", b, Matrix::Ones(kRows, 1), {"1"}}});
+  ASSERT_TRUE(fit) << fit.error().what;
+  EXPECT_NEAR(fit->sigma_squared, ms_e, 1e-6 * ms_e);
+  EXPECT_NEAR(fit->random[1].covariance(0, 0), (ms_b - ms_e) / kR, 1e-6);
+  EXPECT_NEAR(fit->random[0].covariance(0, 0), (ms_a - ms_b) / (kB * kR), 1e-6);
+  EXPECT_NEAR(fit->coefficients[0], y.mean(), 1e-9);
+  EXPECT_NEAR(fit->standard_errors[0], std::sqrt(ms_a / kRows), 1e-7);
+  EXPECT_NEAR(fit->df[0], kA - 1, 1e-3 * kA);
 }
 
 TEST(MixedModelTest, IsStoppedWhenAsked) {
