@@ -1,5 +1,6 @@
 /// Mixed models with any random terms, against lme4 and lmerTest
-/// (tests/golden/statistics-reference/lmm_random_terms.R).
+/// (tests/golden/statistics-reference/lmm_random_terms.R), and their tests after Kenward and Roger
+/// against pbkrtest (kenward_roger.R).
 #include "statistics/mixed/mixed_model.hpp"
 
 #include <cmath>
@@ -8,6 +9,7 @@
 #include <set>
 
 #include "statistics/golden_test.hpp"
+#include "statistics/mixed/kenward_roger.hpp"
 #include "statistics/mixed/lmm.hpp"
 
 namespace tractus {
@@ -178,6 +180,48 @@ TEST(MixedModelTest, SaysWhatCannotBeEstimated) {
             std::string::npos);
   EXPECT_NE(refusal({"a", {"p", "q", "p", "q", "p", "q"}, Matrix::Zero(6, 1), {"x"}})
                 .find("the slope's column x is 0"),
+            std::string::npos);
+}
+
+TEST(MixedModelTest, KenwardAndRogersTestsAgreeWithPbkrtest) {
+  const auto reference = golden::expected("kenward_roger");
+  const auto fits = golden::expected("lmm_random_terms");
+  int compared = 0, joint_tests = 0;
+  for (const auto& [name, want] : reference["fits"].items()) {
+    const auto& of = fits["fits"][name];
+    const golden::Csv csv(of["data"]);
+    const Vector y = csv.numbers(of["response"]);
+    std::vector<RandomTerm> terms;
+    for (const Term& term : kTerms.at(name)) terms.push_back(random_term(csv, term));
+    const Design design = design_of(csv, of["formula"], y.size());
+    const auto fit = mixed_model(design, y, terms);
+    ASSERT_TRUE(fit) << name << ": " << fit.error().what;
+    const auto tests = kenward_roger(*fit, design, terms);
+    ASSERT_TRUE(tests) << name << ": " << tests.error().what;
+    ++compared;
+    expect_near(tests->standard_errors, golden::as_list(want["se"]), 1e-6, name + " se");
+    expect_near(tests->df, golden::as_list(want["df"]), 1e-6, name + " df");
+    if (!want["joint"].contains("F")) continue;
+    ++joint_tests;
+    std::vector<Eigen::Index> columns;
+    for (Eigen::Index j = 1; j < design.columns.cols(); ++j) columns.push_back(j);
+    const auto joint = joint_test(*tests, columns);
+    expect_near(joint.statistic, want["joint"]["F"], 1e-6, name + " F");
+    expect_near(joint.df2, want["joint"]["df2"], 1e-6, name + " df of F");
+    expect_near(joint.p, want["joint"]["p"], 1e-4, name + " p of F");
+  }
+  EXPECT_EQ(compared, 7);
+  EXPECT_EQ(joint_tests, 1);
+}
+
+TEST(MixedModelTest, KenwardAndRogersTestsRefuseManyLevels) {
+  std::vector<std::string> labels;
+  for (int i = 0; i < 6003; ++i) labels.push_back(std::to_string(i % 2001));
+  const Vector x = Vector::LinSpaced(6003, 0.0, 1.0);
+  const std::vector<RandomTerm> terms = {{"a", labels, Matrix::Ones(6003, 1), {"1"}}};
+  const auto tests = kenward_roger(MixedModel{}, with_intercept(x, {"x"}), terms);
+  ASSERT_FALSE(tests);
+  EXPECT_NE(tests.error().what.find("at most 2000 random effects, these terms have 2001"),
             std::string::npos);
 }
 
