@@ -21,9 +21,9 @@ constexpr double kStep = 2e-3;      // of differences in θ, whose entries are o
 constexpr double kSingular = 1e-4;  // as lme4's isSingular: relative to σ
 
 /// The criterion of given data as a function of θ.
-class Problem {
+class ProfiledCriterion {
  public:
-  Problem(const Design& design, const Vector& y, const std::vector<RandomTerm>& terms)
+  ProfiledCriterion(const Design& design, const Vector& y, const std::vector<RandomTerm>& terms)
       : squares_(design.columns, terms), centre_(design.intercept ? y.mean() : 0.0) {
     squares_.observe(y.array() - centre_);
   }
@@ -54,7 +54,8 @@ class Problem {
 };
 
 /// A variance at 0 may be a local minimum: θ² is tried at some sizes there.
-Vector least(const Problem& problem, Likelihood how, const ScalarField& f, bool& converged) {
+Vector least(const ProfiledCriterion& problem, Likelihood how, const ScalarField& f,
+             bool& converged) {
   Minimum best = minimise(f, problem.squares().start(), kStep);
   for (Eigen::Index i = 0; i < best.x.size(); ++i) {
     if (std::abs(best.x[i]) > 1e-3) continue;
@@ -71,7 +72,8 @@ Vector least(const Problem& problem, Likelihood how, const ScalarField& f, bool&
   return best.x;
 }
 
-void add_random(const Problem& problem, const Vector& theta, const Penalised& at, MixedModel& out) {
+void add_random(const ProfiledCriterion& problem, const Vector& theta, const Penalised& at,
+                MixedModel& out) {
   Eigen::Index place = 0;
   for (std::size_t t = 0; t < at.effects.size(); ++t) {
     const ScaledTerm& term = problem.squares().terms()[t];
@@ -90,7 +92,7 @@ void add_random(const Problem& problem, const Vector& theta, const Penalised& at
   }
 }
 
-Matrix unscaled_covariance(const Problem& problem, const Penalised& at) {
+Matrix unscaled_covariance(const ProfiledCriterion& problem, const Penalised& at) {
   const auto inverse = problem.squares().column_scale().cwiseInverse();
   return inverse.asDiagonal() * at.covariance * inverse.asDiagonal();
 }
@@ -106,7 +108,8 @@ Matrix twice_inverse(const Matrix& hessian) {
 }
 
 /// Hessian of the criterion in (θ, σ), not profiled: ln|L|² (+ ln|R_X|²) + r²/σ² + df ln(2πσ²).
-void add_curvature(const Problem& problem, Likelihood how, const Vector& theta, MixedModel& out) {
+void add_curvature(const ProfiledCriterion& problem, Likelihood how, const Vector& theta,
+                   MixedModel& out) {
   const auto m = theta.size();
   const double sigma2 = out.sigma_squared, sigma = std::sqrt(sigma2), df = problem.df(how);
   const auto fixed_sigma = [&](const Vector& at) {
@@ -154,7 +157,7 @@ core::Result<MixedModel> mixed_model(const Design& design, const Vector& respons
   TRY(check_terms(terms, response.size()));
   TRY(check(design, response));
   if (!collinear_columns(design).empty()) return collinear_error(design);
-  const Problem problem(design, response, terms);
+  const ProfiledCriterion problem(design, response, terms);
   bool stopped = false;
   int evaluations = 0;
   const ScalarField f = [&](const Vector& theta) {
