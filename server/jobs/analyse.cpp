@@ -129,10 +129,18 @@ Result<void> analyse(store::Store& store, const store::Objects& objects,
   TRY(note(0.2));
   if (ending()) return Error{Errc::cancelled, "stopped"};
   const auto& d = snapshot.description;
+  double noted = 0.2;
   const auto analysed =
       TRY(assessment::analyse(plan, snapshot.table,
                               {d["name"], *run.snapshot, d["frozen_utc"], d.value("source", ""),
-                               d.value("simulated", false)}));
+                               d.value("simulated", false)},
+                              [&](double share) {
+                                const double now = 0.2 + 0.7 * share;
+                                if (ending()) return false;
+                                // A share that could not be noted is noted with the next one.
+                                if (now >= noted + 0.01 && note(now)) noted = now;
+                                return true;
+                              }));
   // A plan goes on where one of its analyses cannot be done; a single question has no answer then.
   if (const auto& first = analysed.result["analyses"][0]; !run.plan_id && first.contains("error"))
     return Error{Errc::bad_input, first["error"].get<std::string>()};

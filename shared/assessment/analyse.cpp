@@ -21,16 +21,19 @@ struct Run {
   std::vector<plot::Figure> figures;
 };
 
-core::Result<Findings> found_by(const PlannedAnalysis& one, const Table& table) {
+core::Result<Findings> found_by(const PlannedAnalysis& one, const Table& table,
+                                const core::Progress& progress) {
   const auto method = TRY(method_named(one.method));
-  if (method.formula.empty()) return run(method, one.options);
-  if (!one.filter) return run(method, table, one.formula, one.options, Missing::drop);
+  if (method.formula.empty()) return run(method, one.options, progress);
+  if (!one.filter) return run(method, table, one.formula, one.options, Missing::drop, progress);
   const auto keeps = TRY(one.filter->rows_of(table));
   return run(method, table.filtered([&](std::size_t row) { return bool(keeps[row]); }), one.formula,
-             one.options, Missing::drop);
+             one.options, Missing::drop, progress);
 }
 
-Run run_one(const PlannedAnalysis& one, const Table& table) {
+/// Errors: cancelled. What else goes wrong is part of the result.
+core::Result<Run> run_one(const PlannedAnalysis& one, const Table& table,
+                          const core::Progress& progress) {
   Run out{{{"id", one.id},
            {"question", one.question},
            {"family", one.family},
@@ -39,7 +42,8 @@ Run run_one(const PlannedAnalysis& one, const Table& table) {
            {"where", one.where},
            {"options", one.options}},
           {}};
-  auto found = found_by(one, table);
+  auto found = found_by(one, table, progress);
+  if (!found && found.error().code == core::Errc::cancelled) return found.error();
   if (!found) {
     out.entry["error"] = found.error().what;
     return out;
@@ -176,7 +180,8 @@ Json head_of(const Plan& plan) {
 
 }  // namespace
 
-core::Result<Analysed> analyse(const Plan& plan, const Table& table, const Provenance& provenance) {
+core::Result<Analysed> analyse(const Plan& plan, const Table& table, const Provenance& provenance,
+                               const core::Progress& progress) {
   Json counted = Json::array();
   auto because = TRY(exclusions_of(plan, table, counted));
   const Table used = table.filtered([&](std::size_t row) { return because[row].empty(); });
@@ -195,8 +200,12 @@ core::Result<Analysed> analyse(const Plan& plan, const Table& table, const Prove
                 {"analyses", Json::array()}},
                {},
                std::move(because)};
+  const double each = 1.0 / double(plan.analyses.size());
   for (const auto& one : plan.analyses) {
-    auto run = run_one(one, used);
+    const double before = each * double(out.figures.size());
+    if (progress && !progress(before)) return core::Error{core::Errc::cancelled, "stopped"};
+    auto run = TRY(run_one(
+        one, used, [&](double share) { return !progress || progress(before + each * share); }));
     out.result["analyses"].push_back(std::move(run.entry));
     out.figures.push_back(std::move(run.figures));
   }

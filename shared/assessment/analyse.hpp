@@ -33,9 +33,10 @@ struct Analysed {
 ///   cell in a column that an analysis uses are left out of that analysis and counted.
 /// An analysis that cannot be done is an "error" in the result, and its tests count in the
 /// correction as if p were 1. Errors: bad_input where an exclusion cannot be read off the table, or
-/// leaves no row.
+/// leaves no row; cancelled where `progress` asked to stop.
 core::Result<Analysed> analyse(const Plan& plan, const Table& table,
-                               const Provenance& provenance = {});
+                               const Provenance& provenance = {},
+                               const core::Progress& progress = {});
 
 /// "F(1.94, 17.5) = 5.97, p = 0.011, generalised eta squared 0.214" of a test's JSON.
 std::string worded(const core::Json& test);

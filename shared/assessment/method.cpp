@@ -66,7 +66,8 @@ core::Result<std::map<std::string, std::string>> complete(
 }
 
 core::Result<Findings> run(const Method& method, const Table& table, const std::string& formula,
-                           const std::map<std::string, std::string>& options, Missing missing) {
+                           const std::map<std::string, std::string>& options, Missing missing,
+                           const core::Progress& progress) {
   const auto parsed = TRY(parse_formula(formula));
   if (!parsed.random.empty() && !method.random_terms)
     return core::bad_input(
@@ -75,13 +76,13 @@ core::Result<Findings> run(const Method& method, const Table& table, const std::
                     method.id));
   const auto completed = TRY(complete(method, options));
   const auto selected = TRY(table.selected(parsed.columns(), missing));
-  return method.run({parsed, selected, formula, completed});
+  return method.run({parsed, selected, formula, completed, progress});
 }
 
-core::Result<Findings> run(const Method& method,
-                           const std::map<std::string, std::string>& options) {
+core::Result<Findings> run(const Method& method, const std::map<std::string, std::string>& options,
+                           const core::Progress& progress) {
   const auto completed = TRY(complete(method, options));
-  return method.run({Formula{}, Table{}, "", completed});
+  return method.run({Formula{}, Table{}, "", completed, progress});
 }
 
 }  // namespace assessment

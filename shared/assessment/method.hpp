@@ -10,6 +10,7 @@
 
 #include "assessment/formula.hpp"
 #include "core/json.hpp"
+#include "core/progress.hpp"
 #include "plot/figure.hpp"
 
 namespace tractus {
@@ -32,6 +33,7 @@ struct Analysis {
   const Table& table;
   std::string formula_text;
   std::map<std::string, std::string> options;  ///< as complete() leaves them
+  core::Progress progress = {};                ///< of methods that may take minutes
 
   double number(const std::string& option) const;
   const std::string& text(const std::string& option) const;
@@ -70,11 +72,14 @@ core::Result<Method> method_named(const std::string& id);
 core::Result<std::map<std::string, std::string>> complete(
     const Method& method, const std::map<std::string, std::string>& given);
 
-/// Reads the formula, selects its columns from `table` and runs. Errors: as the parts, one line.
+/// Reads the formula, selects its columns from `table` and runs. Errors: as the parts, one line;
+/// cancelled where `progress` asked to stop.
 core::Result<Findings> run(const Method& method, const Table& table, const std::string& formula,
-                           const std::map<std::string, std::string>& options, Missing missing);
+                           const std::map<std::string, std::string>& options, Missing missing,
+                           const core::Progress& progress = {});
 /// The same for a method that needs no data.
-core::Result<Findings> run(const Method& method, const std::map<std::string, std::string>& options);
+core::Result<Findings> run(const Method& method, const std::map<std::string, std::string>& options,
+                           const core::Progress& progress = {});
 
 }  // namespace assessment
 }  // namespace tractus

@@ -63,6 +63,22 @@ std::string lock_sentence(const Json& plan, const Json& data) {
   return out + ".";
 }
 
+/// What the study was planned for, beside what it has.
+std::string power_sentence(const Json& one, const Json& data) {
+  const auto& report = one["report"];
+  const auto& answer = report["answer"];
+  std::string out = fmt::format("'{}': planned for {} {} and an effect of {}, power {}",
+                                one["id"].get<std::string>(), number(answer["n"], "{:.0f}"),
+                                answer["counts"].get<std::string>(),
+                                number(report["design"]["effect"]), number(answer["power"]));
+  if (answer.contains("monte_carlo95_low"))
+    out += fmt::format(" by simulation (95 % interval {} to {})",
+                       number(answer["monte_carlo95_low"]), number(answer["monte_carlo95_high"]));
+  if (const long subjects = data["subjects"].get<long>(); subjects > 0)
+    out += fmt::format("; the data have {} subjects", subjects);
+  return out + ".";
+}
+
 }  // namespace
 
 std::string worded_p(double p) {
@@ -140,6 +156,9 @@ std::vector<std::string> results_sentences(const Json& result) {
                                     : "no evidence against the null hypothesis, which is not shown "
                                       "to be true"));
     }
+  for (const auto& one : result["analyses"])
+    if (one["method"] == "power" && one.contains("report"))
+      out.push_back(power_sentence(one, result["data"]));
   for (const auto& one : result["analyses"])
     if (one.contains("error"))
       out.push_back(fmt::format("'{}' could not be done: {}.", one["id"].get<std::string>(),

@@ -120,6 +120,49 @@ TEST(Analyse, ExcludesWithReasonsCorrectsAndGivesTheSameBytesAgain) {
   EXPECT_EQ(twice->result.dump(), r.dump());
 }
 
+TEST(Analyse, SaysForWhatTheStudyWasPlannedBesideWhatTheDataHave) {
+  Json json = small_plan();
+  json["analyses"].push_back({{"id", "size"},
+                              {"method", "power"},
+                              {"options",
+                               {{"test", "mixed"},
+                                {"compares", "groups"},
+                                {"n", 17},
+                                {"trials", 1},
+                                {"effect", 1},
+                                {"runs", 400}}}});
+  const auto done =
+      analyse(plan_of(json), table_in_file(kReference + "data/sim_cohort_trials.csv"));
+  ASSERT_TRUE(done) << done.error().what;
+  const auto& answer = done->result["analyses"][2]["report"]["answer"];
+  // R: power.t.test(n = 17, delta = 1)$power = 0.8070; five standard errors of 400 runs.
+  EXPECT_NEAR(answer["power"].get<double>(), 0.8070, 0.1);
+  std::string sentences;
+  for (const auto& sentence : done->result["results"]) sentences += sentence.get<std::string>();
+  EXPECT_NE(sentences.find("'size': planned for 17 surgeons per group and an effect of 1, power "),
+            std::string::npos);
+  EXPECT_NE(sentences.find("; the data have 10 subjects."), std::string::npos);
+}
+
+TEST(Analyse, StopsWhenAsked) {
+  const Table table = table_in_file(kReference + "data/sim_cohort_trials.csv");
+  Json json = small_plan();
+  json["analyses"][0] = {
+      {"id", "mixed"},
+      {"method", "lmm"},
+      {"formula", "operation_time_s ~ repetition + (1 | surgeon) + (1 | scenario)"}};
+  std::vector<double> shares;
+  const auto stopped = analyse(plan_of(json), table, {}, [&](double share) {
+    shares.push_back(share);
+    return shares.size() < 4;  // within the first analysis
+  });
+  ASSERT_FALSE(stopped);
+  EXPECT_EQ(stopped.error().code, core::Errc::cancelled);
+  ASSERT_EQ(shares.size(), 4u);
+  EXPECT_GT(shares[3], 0.0);
+  EXPECT_LT(shares[3], 0.5);
+}
+
 TEST(Analyse, SaysWhatCouldNotBeDone) {
   Json json = small_plan();
   json["analyses"][0]["formula"] = "breach_velocity_mm_s ~ repetition + (1|scenario)";

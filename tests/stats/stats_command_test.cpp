@@ -189,6 +189,21 @@ TEST_F(Stats, FallsBackToFirthWhereOutcomesAreSeparatedAndSaysSo) {
 TEST_F(Stats, GivesTheReferenceValuesByEveryFurtherMethod) {
   const auto power = core::parse_json(plain("power --json --test repeated").out, "stdout");
   EXPECT_EQ((*power)["answer"]["n"], 28);  // R: f = .25, rho = .5, eps = 1
+  const auto simulated = core::parse_json(
+      plain("power --json --test mixed --compares groups --trials 1 --effect 1 --n 17").out,
+      "stdout");
+  // R: power.t.test(n = 17, delta = 1)$power = 0.8070; five standard errors of 1000 runs.
+  EXPECT_NEAR((*simulated)["answer"]["power"].get<double>(), 0.8070, 0.063);
+  EXPECT_EQ((*simulated)["design"]["seed"], 1);
+  const auto looks = core::parse_json(plain("looks --json --at 5 --power 0.9").out, "stdout");
+  expect_near((*looks)["looks"][4]["z_bound"], 2.0310320, 1e-6);  // R: mvtnorm
+  expect_near((*looks)["answer"]["times_the_size_of_one_look"], 1.0230779, 1e-6);
+  const auto crossed =
+      json("lmm", "sim_crossed_2.csv", "y ~ trial + (1 + trial | surgeon) + (1 | scenario)",
+           "--df kenward-roger");
+  const auto pbkrtest = expected("kenward_roger")["fits"]["sim_crossed_2"];
+  expect_near(crossed["kenward_roger"][1]["standard_error"], pbkrtest["se"][1], 1e-6);
+  expect_near(crossed["tests"][0]["p"], pbkrtest["p"][1], 1e-4);
 
   const auto p = json("p-adjust", "paper_table6_table7_p.csv", "p ~ table + scenario + measure");
   const auto want_p = expected("p_adjust")["paper_tables6_7"];
@@ -296,6 +311,9 @@ TEST_F(Stats, RefusesByNameWhatEachMethodCannotTake) {
   EXPECT_THAT(refusal("anova", file("y,g\n1,a\n2,a\n").string(), "y ~ g"), HasSubstr("one group"));
   EXPECT_THAT(plain("power --test correlation --effect 2").err, HasSubstr("between -1 and 1"));
   EXPECT_THAT(plain("power --alpha 7").err, HasSubstr("option 'alpha' is '7'"));
+  EXPECT_THAT(plain("looks --at many").err, HasSubstr("'many' in at 'many' is no number"));
+  EXPECT_THAT(plain("power --test mixed --n 2.5").err, HasSubstr("n is 2.5; a whole number"));
+  EXPECT_THAT(plain("power --test mixed --trials 1").err, HasSubstr("needs 2 trials of each"));
   EXPECT_EQ(plain("magic").exit, 2);
 }
 

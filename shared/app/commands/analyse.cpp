@@ -11,6 +11,7 @@
 #include "assessment/snapshot.hpp"
 #include "core/clock.hpp"
 #include "core/file.hpp"
+#include "core/progress.hpp"
 #include "core/try.hpp"
 
 namespace tractus {
@@ -94,7 +95,8 @@ core::Result<Ran> ran(const AnalyseOptions& o) {
   const auto& d = snapshot.description;
   auto analysed = TRY(assessment::analyse(plan, snapshot.table,
                                           {d["name"], snapshot.sha256(), d["frozen_utc"],
-                                           d.value("source", ""), d.value("simulated", false)}));
+                                           d.value("source", ""), d.value("simulated", false)},
+                                          core::terminal_progress("analyse")));
   return Ran{std::move(snapshot), std::move(analysed)};
 }
 

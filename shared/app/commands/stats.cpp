@@ -9,6 +9,7 @@
 #include "app/command.hpp"
 #include "assessment/report.hpp"
 #include "core/file.hpp"
+#include "core/progress.hpp"
 #include "core/try.hpp"
 
 namespace tractus {
@@ -26,14 +27,15 @@ Outcome run_stats(const assessment::Method& method, const StatsOptions& o) {
   std::map<std::string, std::string> given;
   for (const auto& [name, value] : o.more)
     if (!value.empty()) given.emplace(name, value);
+  const auto progress = core::terminal_progress(method.id);
   if (method.formula.empty()) {
-    found = assessment::run(method, given);
+    found = assessment::run(method, given, progress);
   } else {
     const auto formula = TRY(assessment::parse_formula(o.formula));
     const auto missing = o.drop_missing ? assessment::Missing::drop : assessment::Missing::refuse;
     const auto table = TRY(assessment::Table::read(o.data, formula.columns(), missing));
     const auto options = TRY(assessment::complete(method, given));
-    found = method.run({formula, table, o.formula, options});
+    found = method.run({formula, table, o.formula, options, progress});
   }
   if (!found) return found.error();
   if (!o.svg.empty()) {
@@ -51,10 +53,15 @@ Outcome run_stats(const assessment::Method& method, const StatsOptions& o) {
 }
 
 std::string example_of(const assessment::Method& method) {
+  if (method.id == "looks")
+    return "tractus stats looks --at 4 --power 0.9\n"
+           "  tractus stats looks --at \"0.3 0.7 1\" --spending pocock";
   if (method.formula.empty())
     return "tractus stats power --test repeated --effect 0.25 --levels 3 --power 0.8\n"
            "  28 people\n"
-           "  tractus stats power --test correlation --effect 0.3065 --n 10";
+           "  tractus stats power --test correlation --effect 0.3065 --n 10\n"
+           "  tractus stats power --test mixed --effect -0.2 --trials 12 --scenarios 4 "
+           "--surgeon-sd 1 --slope-sd 0.1";
   return fmt::format("tractus stats {} --data trials.csv --formula \"{}\" --json", method.id,
                      method.formula);
 }

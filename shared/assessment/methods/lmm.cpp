@@ -163,29 +163,41 @@ statistics::Vector residuals_of(const Problem& problem,
 }
 
 core::Result<Findings> run_with_random_terms(const Analysis& of) {
-  if (of.text("df") == "kenward-roger")
-    return core::bad_input(
-        "df: kenward-roger takes one (1|column); other random terms take satterthwaite");
   const auto problem = TRY(problem_of(of, true));
   std::vector<statistics::RandomTerm> terms;
   for (const auto& effects : of.formula.random) {
     auto term = TRY(random_term(of, effects));
     terms.push_back(std::move(term));
   }
-  const auto fit = statistics::mixed_model(problem.design(), problem.y, terms);
+  const auto fit = statistics::mixed_model(problem.design(), problem.y, terms,
+                                           statistics::Likelihood::reml, of.progress);
   if (!fit) return located(of, fit.error());
+  if (of.progress) of.progress(1.0);
+  const bool by_kr = of.text("df") == "kenward-roger";
+  statistics::KenwardRoger kr;
+  if (by_kr) {
+    auto tests = statistics::kenward_roger(*fit, problem.design(), terms);
+    if (!tests) return located(of, tests.error());
+    kr = std::move(*tests);
+  }
   Json out = report_head(of, "linear mixed model, REML");
   out["coefficients"] = coefficient_table(fit->names, {{"estimate", &fit->coefficients},
                                                        {"standard_error", &fit->standard_errors},
                                                        {"df", &fit->df},
                                                        {"t", &fit->t},
                                                        {"p", &fit->p}});
-  add_term_tests(of.formula, problem.model,
-                 {fit->coefficients, fit->covariance, fit->df, "t",
-                  [&](const std::vector<Eigen::Index>& columns) {
-                    return statistics::joint_test(*fit, columns);
-                  }},
-                 out);
+  if (by_kr)
+    out["kenward_roger"] = coefficient_table(
+        fit->names,
+        {{"standard_error", &kr.standard_errors}, {"df", &kr.df}, {"t", &kr.t}, {"p", &kr.p}});
+  out["degrees_of_freedom"] = {{"of_the_tests", of.text("df")}};
+  add_term_tests(
+      of.formula, problem.model,
+      {fit->coefficients, by_kr ? kr.covariance : fit->covariance, by_kr ? kr.df : fit->df, "t",
+       [&](const std::vector<Eigen::Index>& columns) {
+         return by_kr ? statistics::joint_test(kr, columns) : statistics::joint_test(*fit, columns);
+       }},
+      out);
   add_random_effects(*fit, out);
   add_predictions(*fit, out);
   const Vector residuals = residuals_of(problem, terms, *fit);
@@ -245,7 +257,7 @@ Method lmm_method() {
       "a linear mixed model, fitted by restricted maximum likelihood, with small-sample degrees "
       "of freedom after Satterthwaite or after Kenward and Roger",
       {{"df",
-        "degrees of freedom of the tests; kenward-roger: of one (1|column)",
+        "degrees of freedom of the tests; kenward-roger: of at most 2000 random effects",
         "satterthwaite",
         {"satterthwaite", "kenward-roger"}}},
       run_lmm,

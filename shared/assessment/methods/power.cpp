@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "assessment/report.hpp"
+#include "assessment/simulated_power.hpp"
 #include "core/try.hpp"
 
 namespace tractus {
@@ -50,6 +51,7 @@ Curve curve_of(const Analysis& of) {
 }
 
 core::Result<Findings> run_power(const Analysis& of) {
+  if (of.text("test") == "mixed" && of.number("effect") != 0.0) return simulated_power(of);
   const Curve curve = curve_of(of);
   if (of.number("effect") == 0.0) return core::bad_input("power: an effect of 0 is never found");
   if (of.text("test") == "correlation" && std::abs(of.number("effect")) >= 1.0)
@@ -80,27 +82,31 @@ core::Result<Findings> run_power(const Analysis& of) {
 
 namespace methods {
 Method power_method() {
+  std::vector<Option> options = {
+      {"test",
+       "what is planned",
+       "repeated",
+       {"repeated", "paired", "two-samples", "anova", "correlation", "regression",
+        "two-proportions", "mixed"}},
+      {"effect",
+       "d, r, f, f2 or h of Cohen 1988, as the test has it; of mixed in the response's unit, "
+       "per trial or between the two",
+       "0.25",
+       {},
+       -1e6,
+       1e6},
+      {"n", "people (per group where there are groups); absent: the n for --power", "", {}, 1, 1e6},
+      {"power", "chance wanted of finding the effect", "0.8", {}, 0.01, 0.9999},
+      {"alpha", "two-sided level", "0.05", {}, 1e-9, 0.5},
+      {"levels", "groups, repeated levels, or predictors of a regression", "3", {}, 1, 1000},
+      {"correlation", "between the repeated levels", "0.5", {}, -0.99, 0.999},
+      {"epsilon", "departure from sphericity", "1", {}, 0.01, 1}};
+  for (auto& option : simulated_power_options()) options.push_back(std::move(option));
   return {"power",
           "Power of a planned study, or how many people it needs",
           "",
-          "power by the noncentral t and F distributions",
-          {{"test",
-            "what is planned",
-            "repeated",
-            {"repeated", "paired", "two-samples", "anova", "correlation", "regression",
-             "two-proportions"}},
-           {"effect", "d, r, f, f2 or h of Cohen 1988, as the test has it", "0.25", {}, -100, 100},
-           {"n",
-            "people (per group where there are groups); absent: the n for --power",
-            "",
-            {},
-            1,
-            1e6},
-           {"power", "chance wanted of finding the effect", "0.8", {}, 0.01, 0.9999},
-           {"alpha", "two-sided level", "0.05", {}, 1e-9, 0.5},
-           {"levels", "groups, repeated levels, or predictors of a regression", "3", {}, 1, 1000},
-           {"correlation", "between the repeated levels", "0.5", {}, -0.99, 0.999},
-           {"epsilon", "departure from sphericity", "1", {}, 0.01, 1}},
+          "power by the noncentral t and F distributions, and of mixed models by simulation",
+          std::move(options),
           run_power};
 }
 }  // namespace methods

@@ -72,7 +72,12 @@ bool newton(const ScalarField& f, double step, Minimum& at) {
     const Vector move = -hessian.solve(gradient);
     if (!move.allFinite()) return false;
     const double value = f(at.x + move);
-    if (!(value <= at.value + 10.0 * noise(at.value))) return move.norm() < 1e-5;
+    if (!(value <= at.value + 10.0 * noise(at.value))) {
+      // So near the minimum the slope tells more than the value, which is a sum of many terms.
+      const bool near = move.norm() < 1e-5;
+      if (near) at.x += move;
+      return near;
+    }
     at.x += move;
     at.value = value;
     if (move.norm() < 1e-9 * (1.0 + at.x.norm())) return true;

@@ -5,16 +5,13 @@
 ///     F = Σ t_m² / q,  ν_m = 2 d_m² / (g_mᵀ A g_m),  E = Σ_{ν_m > 2} ν_m/(ν_m − 2),
 ///     df = 2E/(E − q)
 ///
-/// Kenward & Roger 1997, for a covariance linear in its parameters:
-///
-///     Φ_A = Φ + 2 Φ [Σ W_ab (Q_ab − D_a Φ D_b)] Φ;   Θ = Lᵀ (L Φ Lᵀ)⁻¹ L
-///     A_1 = Σ W_ab tr(ΘΦD_aΦ) tr(ΘΦD_bΦ),  A_2 = Σ W_ab tr(ΘΦD_aΦ ΘΦD_bΦ)
-///     F = (λ/q) (Lβ)ᵀ (L Φ_A Lᵀ)⁻¹ Lβ on q and m degrees of freedom, λ and m from A_1 and A_2
+/// or after Kenward and Roger (kenward_roger.hpp).
 ///
 /// With τ² = 0 the first is least squares on n − p degrees of freedom; the second goes on counting
 /// the groups of the design.
 #pragma once
 
+#include "statistics/mixed/kenward_roger.hpp"
 #include "statistics/mixed/lmm.hpp"
 #include "statistics/regression/wald.hpp"
 
@@ -30,11 +27,6 @@ JointTest joint_test(const Lmm& fit, const std::vector<Eigen::Index>& columns, S
 /// @param contrast  l, one entry per coefficient.
 double satterthwaite_df(const Lmm& fit, const Vector& contrast);
 
-/// Each coefficient after Kenward & Roger: standard errors from Φ_A.
-struct KenwardRoger {
-  Matrix covariance;  ///< Φ_A
-  Vector standard_errors, df, t, p;
-};
 KenwardRoger kenward_roger(const Lmm& fit);
 
 }  // namespace tractus::statistics

@@ -1,226 +1,62 @@
 #include "statistics/mixed/mixed_model.hpp"
 
-#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <Eigen/SVD>
-#include <Eigen/SparseCholesky>
 #include <cmath>
-#include <map>
 #include <numbers>
 
 #include "core/try.hpp"
 #include "statistics/distributions/distributions.hpp"
 #include "statistics/mixed/derivatives.hpp"
+#include "statistics/mixed/penalised.hpp"
 
 namespace tractus {
 namespace statistics {
 namespace {
 
-using Sparse = Eigen::SparseMatrix<double>;
 using core::Errc;
 using core::Error;
 
 constexpr double kStep = 2e-3;      // of differences in θ, whose entries are of order 1
 constexpr double kSingular = 1e-4;  // as lme4's isSingular: relative to σ
-constexpr Eigen::Index kMostEffects = 200'000;
 
-/// One term with its levels counted and its columns scaled to a root mean square of 1.
-struct ScaledTerm {
-  const RandomTerm* from = nullptr;
-  std::vector<std::string> levels;
-  std::vector<Eigen::Index> level_of;  // per observation
-  Vector scale;                        // per effect
-  Eigen::Index first = 0;              // column of Z
-  Eigen::Index effects() const { return scale.size(); }
-  Eigen::Index size() const { return effects() * Eigen::Index(levels.size()); }
-  /// How many entries of θ it has.
-  Eigen::Index parameters() const { return effects() * (effects() + 1) / 2; }
-};
-
-ScaledTerm scaled(const RandomTerm& term) {
-  ScaledTerm out;
-  out.from = &term;
-  std::map<std::string_view, Eigen::Index> place;
-  for (const auto& label : term.labels) {
-    const auto [at, fresh] = place.try_emplace(label, Eigen::Index(out.levels.size()));
-    if (fresh) out.levels.push_back(label);
-    out.level_of.push_back(at->second);
-  }
-  out.scale = (term.columns.colwise().squaredNorm() / double(term.columns.rows())).cwiseSqrt();
-  return out;
-}
-
-/// Λ_t of a term, from its part of θ in column order.
-Matrix triangle(const ScaledTerm& term, const Vector& theta, Eigen::Index& at) {
-  Matrix out = Matrix::Zero(term.effects(), term.effects());
-  for (Eigen::Index c = 0; c < term.effects(); ++c)
-    for (Eigen::Index r = c; r < term.effects(); ++r) out(r, c) = theta[at++];
-  return out;
-}
-
-/// What one θ gives, in units of the scaled columns.
-struct At {
-  double log_det_L = 0.0;   // ln|L|²
-  double log_det_RX = 0.0;  // ln|R_X|²
-  double rss = 0.0;         // r²
-  Vector beta;
-  Vector u;           // spherical random effects
-  Matrix covariance;  // (R_XᵀR_X)⁻¹
-};
-
-/// The penalised least squares problem: cross products once, a factorisation per θ.
-class Problem {
+/// The criterion of given data as a function of θ.
+class ProfiledCriterion {
  public:
-  Problem(const Design& design, const Vector& y, const std::vector<RandomTerm>& terms);
+  ProfiledCriterion(const Design& design, const Vector& y, const std::vector<RandomTerm>& terms)
+      : squares_(design.columns, terms), centre_(design.intercept ? y.mean() : 0.0) {
+    squares_.observe(y.array() - centre_);
+  }
 
-  At solve(const Vector& theta, bool whole) const;
-  double criterion(const Vector& theta, Likelihood how) const;
-  Vector start() const;
-
-  const std::vector<ScaledTerm>& terms() const { return terms_; }
-  const Vector& column_scale() const { return column_scale_; }
-  double df(Likelihood how) const { return how == Likelihood::reml ? n_ - double(p_) : n_; }
-  double centre() const { return centre_; }
+  const PenalisedLeastSquares& squares() const { return squares_; }
+  double centre() const { return centre_; }  ///< taken from the response
+  double df(Likelihood how) const {
+    const auto n = squares_.rows();
+    return double(how == Likelihood::reml ? n - squares_.column_scale().size() : n);
+  }
+  Penalised solve(const Vector& theta) const {
+    return squares_.solve(theta, PenalisedLeastSquares::Want::criterion);
+  }
+  Penalised everything(const Vector& theta) const {
+    return squares_.solve(theta, PenalisedLeastSquares::Want::everything);
+  }
+  double criterion(const Vector& theta, Likelihood how) const {
+    const Penalised at = solve(theta);
+    const double left = df(how);
+    const double out =
+        at.log_det_L + left * (1.0 + std::log(2.0 * std::numbers::pi * at.rss / left));
+    return how == Likelihood::reml ? out + at.log_det_RX : out;
+  }
 
  private:
-  Sparse lambda(const Vector& theta) const;
-
-  std::vector<ScaledTerm> terms_;
-  Vector column_scale_;  // of X
-  double n_ = 0.0, centre_ = 0.0, yy_ = 0.0;
-  Eigen::Index p_ = 0, q_ = 0;
-  Sparse zz_;
-  Matrix zx_, xx_;
-  Vector zy_, xy_;
-  using Factor = Eigen::SimplicialLLT<Sparse, Eigen::Lower, Eigen::AMDOrdering<int>>;
-  mutable Factor factor_;  // its pattern is that of every θ
+  PenalisedLeastSquares squares_;
+  double centre_ = 0.0;
 };
 
-Problem::Problem(const Design& design, const Vector& y, const std::vector<RandomTerm>& terms) {
-  n_ = double(y.size());
-  p_ = design.columns.cols();
-  for (const auto& term : terms) {
-    terms_.push_back(scaled(term));
-    terms_.back().first = q_;
-    q_ += terms_.back().size();
-  }
-  column_scale_ = (design.columns.colwise().squaredNorm() / n_).cwiseSqrt();
-  const Matrix x = design.columns * column_scale_.cwiseInverse().asDiagonal();
-  centre_ = design.intercept ? y.mean() : 0.0;
-  const Vector centred = y.array() - centre_;
-  std::vector<Eigen::Triplet<double>> entries;
-  for (const auto& term : terms_)
-    for (Eigen::Index i = 0; i < y.size(); ++i)
-      for (Eigen::Index e = 0; e < term.effects(); ++e)
-        entries.emplace_back(i, term.first + term.level_of[std::size_t(i)] * term.effects() + e,
-                             term.from->columns(i, e) / term.scale[e]);
-  Sparse z(y.size(), q_);
-  z.setFromTriplets(entries.begin(), entries.end());
-  const Sparse zt = z.transpose();
-  zz_ = zt * z;
-  zx_ = zt * x;
-  zy_ = zt * centred;
-  xx_ = x.transpose() * x;
-  xy_ = x.transpose() * centred;
-  yy_ = centred.squaredNorm();
-  Sparse identity(q_, q_);
-  identity.setIdentity();
-  const Sparse l = lambda(Vector::Ones(start().size()));
-  factor_.analyzePattern(Sparse(Sparse(l.transpose()) * zz_ * l) + identity);
-}
-
-Vector Problem::start() const {
-  Eigen::Index size = 0;
-  for (const auto& term : terms_) size += term.parameters();
-  Vector out = Vector::Zero(size);
-  Eigen::Index at = 0;
-  for (const auto& term : terms_)
-    for (Eigen::Index c = 0; c < term.effects(); ++c) {
-      out[at] = 1.0;
-      at += term.effects() - c;
-    }
-  return out;
-}
-
-Sparse Problem::lambda(const Vector& theta) const {
-  std::vector<Eigen::Triplet<double>> entries;
-  Eigen::Index at = 0;
-  for (const auto& term : terms_) {
-    const Matrix block = triangle(term, theta, at);
-    const auto k = term.effects();
-    for (Eigen::Index level = 0; level < Eigen::Index(term.levels.size()); ++level)
-      for (Eigen::Index c = 0; c < k; ++c)
-        for (Eigen::Index r = c; r < k; ++r)
-          entries.emplace_back(term.first + level * k + r, term.first + level * k + c, block(r, c));
-  }
-  Sparse out(q_, q_);
-  out.setFromTriplets(entries.begin(), entries.end());
-  return out;
-}
-
-At Problem::solve(const Vector& theta, bool whole) const {
-  const Sparse l = lambda(theta), lt = l.transpose();
-  Sparse identity(q_, q_);
-  identity.setIdentity();
-  factor_.factorize(Sparse(lt * zz_ * l) + identity);
-  const auto lower = factor_.matrixL();
-  const Vector cu = lower.solve(Vector(factor_.permutationP() * Vector(lt * zy_)));
-  const Matrix rzx = lower.solve(Matrix(factor_.permutationP() * Matrix(lt * zx_)));
-  const Eigen::LLT<Matrix> rx(xx_ - rzx.transpose() * rzx);
-  At out;
-  out.beta = rx.solve(Vector(xy_ - rzx.transpose() * cu));
-  const Vector cb = rx.matrixU() * out.beta;
-  out.rss = yy_ - cu.squaredNorm() - cb.squaredNorm();
-  const Sparse& factor = lower.nestedExpression();
-  for (Eigen::Index c = 0; c < q_; ++c) out.log_det_L += 2.0 * std::log(factor.coeff(c, c));
-  out.log_det_RX =
-      2.0 * (rx.matrixLLT().diagonal().array().log().sum() + column_scale_.array().log().sum());
-  if (!whole) return out;
-  out.covariance = rx.solve(Matrix::Identity(p_, p_));
-  out.u = factor_.permutationPinv() * Vector(factor_.matrixU().solve(Vector(cu - rzx * out.beta)));
-  return out;
-}
-
-double Problem::criterion(const Vector& theta, Likelihood how) const {
-  const At at = solve(theta, false);
-  const double left = df(how);
-  const double out = at.log_det_L + left * (1.0 + std::log(2.0 * std::numbers::pi * at.rss / left));
-  return how == Likelihood::reml ? out + at.log_det_RX : out;
-}
-
-Error bad(const std::string& what) { return {Errc::bad_input, what}; }
-
-core::Result<void> check_terms(const Design& design, const Vector& y,
-                               const std::vector<RandomTerm>& terms) {
-  core::require(!terms.empty(), "a mixed model has a random term");
-  Eigen::Index total = 0;
-  for (const auto& term : terms) {
-    core::require(Eigen::Index(term.labels.size()) == y.size() && term.columns.rows() == y.size() &&
-                      term.columns.cols() == Eigen::Index(term.names.size()),
-                  "a random term has a label and a row for each observation");
-    const auto levels = Eigen::Index(scaled(term).levels.size());
-    if (levels < 2)
-      return bad(term.group + ": one level: the spread between its levels cannot be estimated");
-    if (levels * term.columns.cols() >= y.size())
-      return bad(term.group +
-                 ": as many effects as observations: they cannot be told from the "
-                 "residual");
-    for (Eigen::Index e = 0; e < term.columns.cols(); ++e)
-      if (!(term.columns.col(e).squaredNorm() > 0.0) || !term.columns.col(e).allFinite())
-        return bad(term.group + ": the slope's column " + term.names[std::size_t(e)] +
-                   " is 0 or not finite throughout");
-    total += levels * term.columns.cols();
-  }
-  if (total > kMostEffects)
-    return bad("more random effects than " + std::to_string(kMostEffects) + ": group less finely");
-  TRY(check(design, y));
-  if (!collinear_columns(design).empty()) return collinear_error(design);
-  return {};
-}
-
 /// A variance at 0 may be a local minimum: θ² is tried at some sizes there.
-Vector least(const Problem& problem, Likelihood how, const ScalarField& f, bool& converged) {
-  Minimum best = minimise(f, problem.start(), kStep);
+Vector least(const ProfiledCriterion& problem, Likelihood how, const ScalarField& f,
+             bool& converged) {
+  Minimum best = minimise(f, problem.squares().start(), kStep);
   for (Eigen::Index i = 0; i < best.x.size(); ++i) {
     if (std::abs(best.x[i]) > 1e-3) continue;
     for (const double size : {0.03, 0.3}) {
@@ -236,9 +72,11 @@ Vector least(const Problem& problem, Likelihood how, const ScalarField& f, bool&
   return best.x;
 }
 
-void add_random(const Problem& problem, const Vector& theta, const At& at, MixedModel& out) {
+void add_random(const ProfiledCriterion& problem, const Vector& theta, const Penalised& at,
+                MixedModel& out) {
   Eigen::Index place = 0;
-  for (const auto& term : problem.terms()) {
+  for (std::size_t t = 0; t < at.effects.size(); ++t) {
+    const ScaledTerm& term = problem.squares().terms()[t];
     const Matrix block = triangle(term, theta, place);
     const Matrix unscaled = term.scale.cwiseInverse().asDiagonal() * block;
     RandomPart part;
@@ -248,17 +86,14 @@ void add_random(const Problem& problem, const Vector& theta, const At& at, Mixed
     part.covariance = out.sigma_squared * unscaled * unscaled.transpose();
     const Eigen::JacobiSVD<Matrix> svd(block);
     part.singular = svd.singularValues().minCoeff() < kSingular;
-    const auto k = term.effects();
-    part.effects.resize(Eigen::Index(term.levels.size()), k);
-    for (Eigen::Index level = 0; level < part.effects.rows(); ++level)
-      part.effects.row(level) = (unscaled * at.u.segment(term.first + level * k, k)).transpose();
+    part.effects = at.effects[t] * term.scale.cwiseInverse().asDiagonal();
     out.singular = out.singular || part.singular;
     out.random.push_back(std::move(part));
   }
 }
 
-Matrix unscaled_covariance(const Problem& problem, const At& at) {
-  const auto inverse = problem.column_scale().cwiseInverse();
+Matrix unscaled_covariance(const ProfiledCriterion& problem, const Penalised& at) {
+  const auto inverse = problem.squares().column_scale().cwiseInverse();
   return inverse.asDiagonal() * at.covariance * inverse.asDiagonal();
 }
 
@@ -273,14 +108,15 @@ Matrix twice_inverse(const Matrix& hessian) {
 }
 
 /// Hessian of the criterion in (θ, σ), not profiled: ln|L|² (+ ln|R_X|²) + r²/σ² + df ln(2πσ²).
-void add_curvature(const Problem& problem, Likelihood how, const Vector& theta, MixedModel& out) {
+void add_curvature(const ProfiledCriterion& problem, Likelihood how, const Vector& theta,
+                   MixedModel& out) {
   const auto m = theta.size();
   const double sigma2 = out.sigma_squared, sigma = std::sqrt(sigma2), df = problem.df(how);
   const auto fixed_sigma = [&](const Vector& at) {
-    const At here = problem.solve(at, false);
+    const Penalised here = problem.solve(at);
     return here.log_det_L + (how == Likelihood::reml ? here.log_det_RX : 0.0) + here.rss / sigma2;
   };
-  const auto rss = [&](const Vector& at) { return problem.solve(at, false).rss; };
+  const auto rss = [&](const Vector& at) { return problem.solve(at).rss; };
   Matrix hessian(m + 1, m + 1);
   hessian.topLeftCorner(m, m) = numeric_hessian(fixed_sigma, theta, 4.0 * kStep);
   const Vector cross = -2.0 / (sigma2 * sigma) * numeric_gradient(rss, theta, kStep);
@@ -292,7 +128,7 @@ void add_curvature(const Problem& problem, Likelihood how, const Vector& theta, 
     const auto covariance_at = [&](double shift) {
       Vector at = theta;
       at[i] += shift;
-      return Matrix(sigma2 * unscaled_covariance(problem, problem.solve(at, true)));
+      return Matrix(sigma2 * unscaled_covariance(problem, problem.everything(at)));
     };
     const double h = kStep;
     out.covariance_slope.push_back((covariance_at(-2 * h) - 8.0 * covariance_at(-h) +
@@ -318,8 +154,10 @@ void add_tests(MixedModel& out) {
 core::Result<MixedModel> mixed_model(const Design& design, const Vector& response,
                                      const std::vector<RandomTerm>& terms, Likelihood likelihood,
                                      const core::Progress& progress) {
-  TRY(check_terms(design, response, terms));
-  const Problem problem(design, response, terms);
+  TRY(check_terms(terms, response.size()));
+  TRY(check(design, response));
+  if (!collinear_columns(design).empty()) return collinear_error(design);
+  const ProfiledCriterion problem(design, response, terms);
   bool stopped = false;
   int evaluations = 0;
   const ScalarField f = [&](const Vector& theta) {
@@ -330,12 +168,12 @@ core::Result<MixedModel> mixed_model(const Design& design, const Vector& respons
   MixedModel out;
   const Vector theta = least(problem, likelihood, f, out.converged);
   if (stopped) return Error{Errc::cancelled, "stopped"};
-  const At at = problem.solve(theta, true);
+  const Penalised at = problem.everything(theta);
   out.names = design.names;
   out.sigma_squared = at.rss / problem.df(likelihood);
   out.criterion = problem.criterion(theta, likelihood);
   out.covariance = out.sigma_squared * unscaled_covariance(problem, at);
-  out.coefficients = at.beta.cwiseQuotient(problem.column_scale());
+  out.coefficients = at.beta.cwiseQuotient(problem.squares().column_scale());
   if (design.intercept) out.coefficients[0] += problem.centre();
   out.parameters = int(out.coefficients.size() + theta.size()) + 1;
   if (!std::isfinite(out.criterion) || !out.covariance.allFinite() || !(out.sigma_squared > 0.0))

@@ -20,18 +20,10 @@
 #include <vector>
 
 #include "core/progress.hpp"
-#include "statistics/regression/design.hpp"
+#include "statistics/mixed/random_term.hpp"
 #include "statistics/regression/wald.hpp"
 
 namespace tractus::statistics {
-
-/// What varies between the levels of one grouping: (1 + trial | surgeon).
-struct RandomTerm {
-  std::string group;                ///< "surgeon"
-  std::vector<std::string> labels;  ///< the level of each observation
-  Matrix columns;  ///< [observation][effect]: ones for an intercept, a slope's values
-  std::vector<std::string> names;  ///< of the effects
-};
 
 struct RandomPart {
   std::string group;

@@ -1,5 +1,5 @@
-/// Regressions on a million rows against R in the same run, digits on certified problems, and a
-/// whole cohort.
+/// Regressions on a million rows against R in the same run, digits on certified problems, a whole
+/// cohort, and a mixed model of crossed groupings.
 #include <fmt/core.h>
 
 #include <cmath>
@@ -8,6 +8,7 @@
 
 #include "bench/statistics/certified.hpp"
 #include "bench/statistics/cohort.hpp"
+#include "bench/statistics/crossed.hpp"
 #include "bench/statistics/r_peer.hpp"
 #include "bench/support/report.hpp"
 #include "core/file.hpp"
@@ -133,7 +134,7 @@ void cohort(bench::Report& report, bool small) {
 
 }  // namespace tractus
 
-/// `--small`: a tenth of the rows; `--only rows|digits|cohort`: one part.
+/// `--small`: a tenth of the rows; `--only rows|digits|cohort|mixed`: one part.
 int main(int argc, char** argv) {
   using namespace tractus;
   bool small = false;
@@ -155,11 +156,12 @@ int main(int argc, char** argv) {
   }
   Answers r;
   if (n > 0 || wanted("digits")) {
-    r = bench::r_answers(folder->path(), n);
+    r = bench::r_answers("peer.R", folder->path(), n);
     if (r.empty()) fmt::print("R is not here: ours alone\n");
   }
   if (n > 0) million_rows(report, data, r);
   if (wanted("digits")) bench::certified(report, r);
   if (wanted("cohort")) cohort(report, small);
+  if (wanted("mixed")) bench::crossed(report, folder->path(), small);
   return report.finish(argc, argv);
 }

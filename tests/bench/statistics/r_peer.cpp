@@ -12,11 +12,11 @@ namespace {
 const std::string kSource = checkout::kSource;
 }
 
-Answers r_answers(const std::filesystem::path& folder, long rows) {
+Answers r_answers(const std::string& script, const std::filesystem::path& folder, long rows) {
   Answers out;
-  const std::string command = "Rscript --vanilla '" + kSource +
-                              "/tests/bench/statistics/peer.R' '" + folder.string() + "' " +
-                              std::to_string(rows) + " '" + kSource +
+  const std::string command = "Rscript --vanilla '" + kSource + "/tests/bench/statistics/" +
+                              script + "' '" + folder.string() + "' " + std::to_string(rows) +
+                              " '" + kSource +
                               "/tests/golden/statistics-reference/nist' 2>/dev/null";
   FILE* pipe = ::popen(command.c_str(), "r");
   if (!pipe) return out;

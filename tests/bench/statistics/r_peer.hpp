@@ -10,8 +10,8 @@ namespace tractus::bench {
 
 using Answers = std::map<std::string, std::vector<double>>;
 
-/// Runs peer.R; its lines as name → numbers. Empty when there is no R.
-Answers r_answers(const std::filesystem::path& folder, long rows);
+/// Runs an R script of this folder; its lines as name → numbers. Empty when there is no R.
+Answers r_answers(const std::string& script, const std::filesystem::path& folder, long rows);
 
 /// A NIST file: numbers of the lines from `first` on; the numbers after `label`.
 std::vector<std::vector<double>> nist_rows(const std::string& path, std::size_t first);

@@ -1,0 +1,91 @@
+#include "bench/statistics/crossed.hpp"
+
+#include <sys/resource.h>
+
+#include <cmath>
+#include <fstream>
+#include <random>
+
+#include "bench/statistics/r_peer.hpp"
+#include "statistics/mixed/mixed_model.hpp"
+
+namespace tractus {
+namespace bench {
+namespace {
+
+using statistics::Matrix;
+using statistics::Vector;
+
+struct Trials {
+  Vector y, trial, surgeon, scenario;
+  std::vector<statistics::RandomTerm> terms;
+};
+
+Trials simulated(Eigen::Index rows, std::size_t surgeons, std::size_t scenarios) {
+  std::mt19937_64 random(5);
+  std::normal_distribution<double> normal;
+  std::vector<double> level(surgeons), shift(scenarios);
+  for (auto& value : level) value = normal(random);
+  for (auto& value : shift) value = 0.6 * normal(random);
+  Trials out{Vector(rows), Vector(rows), Vector(rows), Vector(rows), {}};
+  std::vector<std::string> who, what;
+  for (Eigen::Index i = 0; i < rows; ++i) {
+    const std::size_t surgeon = random() % surgeons, scenario = random() % scenarios;
+    out.trial[i] = double(1 + random() % 12);
+    out.surgeon[i] = double(surgeon);
+    out.scenario[i] = double(scenario);
+    out.y[i] = 3.0 - 0.2 * out.trial[i] + level[surgeon] + shift[scenario] + 0.8 * normal(random);
+    who.push_back("s" + std::to_string(surgeon));
+    what.push_back("c" + std::to_string(scenario));
+  }
+  const Matrix ones = Matrix::Ones(rows, 1);
+  out.terms = {{"surgeon", who, ones, {"(Intercept)"}}, {"scenario", what, ones, {"(Intercept)"}}};
+  return out;
+}
+
+void store(const std::filesystem::path& path, const Vector& values) {
+  std::ofstream file(path, std::ios::binary);
+  file.write(reinterpret_cast<const char*>(values.data()),
+             values.size() * Eigen::Index(sizeof(double)));
+}
+
+double most_memory_MB() {
+  rusage usage{};
+  ::getrusage(RUSAGE_SELF, &usage);
+  return double(usage.ru_maxrss) / 1024.0;
+}
+
+}  // namespace
+
+void crossed(Report& report, const std::filesystem::path& folder, bool small) {
+  const Eigen::Index rows = small ? 100'000 : 1'000'000;
+  const Trials of = simulated(rows, small ? 1000 : 10'000, small ? 100 : 1000);
+  const auto design = statistics::with_intercept(of.trial, {"trial"});
+  core::Result<statistics::MixedModel> fit = core::Error{core::Errc::bad_input, ""};
+  const double s =
+      seconds(1, process_s, [&] { fit = statistics::mixed_model(design, of.y, of.terms); });
+  report.must("the mixed model's minimum was reached", fit && fit->converged);
+  if (!fit) return;
+  report.at_most("mixed model, surgeons crossed with scenarios", s, small ? 10.0 : 120.0, "s");
+  report.row("largest memory of the process", most_memory_MB(), "MB");
+  store(folder / "y.bin", of.y);
+  store(folder / "trial.bin", of.trial);
+  store(folder / "surgeon.bin", of.surgeon);
+  store(folder / "scenario.bin", of.scenario);
+  const Answers r = r_answers("crossed_peer.R", folder, rows);
+  if (!r.contains("lmer")) return;
+  report.row("the same by lme4", r.at("lmer_s")[0], "s");
+  // lme4's search ends where its tolerance says, ours where rounding does: the criterion tells.
+  const auto& theirs = r.at("lmer");
+  report.at_most("criterion above lme4's, relative", (fit->criterion - theirs[0]) / theirs[0],
+                 1e-12, "");
+  const std::vector<double> ours = {fit->criterion, fit->sigma_squared, fit->coefficients[0],
+                                    fit->coefficients[1], fit->standard_errors[1]};
+  double most = 0.0;
+  for (std::size_t i = 0; i < ours.size(); ++i)
+    most = std::max(most, std::abs(ours[i] - theirs[i]) / std::abs(theirs[i]));
+  report.at_most("estimates, difference to lme4", most, 1e-6, "");
+}
+
+}  // namespace bench
+}  // namespace tractus

@@ -1,0 +1,14 @@
+/// A linear mixed model of surgeons crossed with scenarios, against lme4 in the same run.
+#pragma once
+
+#include <filesystem>
+
+#include "bench/support/report.hpp"
+
+namespace tractus::bench {
+
+/// 10⁶ rows, 10⁴ surgeons, 10³ scenarios; `small`: a tenth of each. Simulated data, written to
+/// `folder` for R.
+void crossed(Report& report, const std::filesystem::path& folder, bool small);
+
+}  // namespace tractus::bench
