@@ -180,6 +180,23 @@ class Rolling(unittest.TestCase):
         at.trains(2)
         at.ends(self.new)
 
+    def test_a_migration_that_fails_leaves_the_server_at_work(self):
+        at = Department(self, self.new, self.new)
+        newest = at.sql("select version, name from schema_versions order by version desc limit 1")[0]
+        at.sql(f"delete from schema_versions where version = {newest[0]}")  # its tables are there: it fails
+        before = at.sql("select * from schema_versions order by version")
+        for station in at.stations:
+            station.start()
+        at.trains(2)
+        with self.assertRaisesRegex(RuntimeError, f"migration 0*{newest[0]}_{newest[1]}: .*already exists"):
+            at.second.start()
+        self.assertEqual(len(at.second.log.read_text().splitlines()), 1, at.second.log.read_text())
+        self.assertEqual(at.sql("select * from schema_versions order by version"), before)
+        at.trains(2)
+        self.assertEqual([line for station in at.stations for line in station.refusals], [])
+        at.sql(f"insert into schema_versions values ({newest[0]}, '{newest[1]}', 1)")
+        at.ends(self.new)
+
     def test_servers_at_work_go_on_when_a_later_version_migrates_and_one_that_starts_refuses(self):
         at = Department(self, self.new, self.new)
         at.second.start()
