@@ -170,6 +170,17 @@ class Release(unittest.TestCase):
             time.sleep(0.1)
         self.assert_verified()
 
+    def test_commands_that_only_look_or_add_leave_the_records_to_the_release(self):
+        """A server of the release may still be at work: after an upgrade that was refused the new programs are there already."""
+        records, out = dump(self.data / "tractus.db"), self.data.with_name("out")
+        step = next(step for step in STEPS if int(step[:4]) not in self.known_steps())
+        for words in (["verify"], ["backup", "--out", out], ["anchor"], ["enrol", "--name", "new", "--out", out], ["publish", self.fixture]):
+            ended = self.run_program(*words)
+            self.assertEqual((ended.returncode, len(ended.stderr.splitlines())), (2, 1), ended.stdout + ended.stderr)
+            self.assertIn(f"without migration {step}", ended.stderr)
+            self.assertFalse(out.exists())
+        self.assertEqual(dump(self.data / "tractus.db"), records)
+
     def test_a_backup_of_the_release_is_restored(self):
         backup, restored = self.data.with_name("backup"), self.data.with_name("restored")
         shutil.copytree(self.data, backup)
