@@ -100,6 +100,12 @@ core::Result<DataFolder> open_data(const fs::path& path) {
   return open_data(path, database);
 }
 
+core::Result<DataFolder> open_up_to_date(const fs::path& path) {
+  const auto database = TRY(database_of(path));
+  TRY(check_up_to_date(database));
+  return open_data(path, database);
+}
+
 core::Result<DataFolder> make_data(const fs::path& path) {
   auto database = TRY(new_database(path));
   return open_data(path, database);

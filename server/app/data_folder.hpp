@@ -22,8 +22,11 @@ struct DataFolder {
   api::Secrets secrets;  ///< of its file secret.key, which no database holds
 };
 
-/// Opens one that `init` made. Errors: not_found, and those of the database.
+/// Opens one that `init` made, and brings its records to this version. Errors: not_found, and those of the database.
 core::Result<DataFolder> open_data(const std::filesystem::path& path);
+/// The same, but records of an earlier version stay as they are. Errors: also conflict (such
+/// records).
+core::Result<DataFolder> open_up_to_date(const std::filesystem::path& path);
 /// With its records there, whatever the environment says.
 core::Result<DataFolder> open_data(const std::filesystem::path& path, const Database& database);
 /// Makes one, or opens what is there (accounts are another matter).

@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 
 #include <cstdlib>
+#include <set>
 
 #include "core/file.hpp"
 #include "core/try.hpp"
+#include "db/store/database/migrations.hpp"
 
 namespace tractus {
 namespace app {
@@ -69,6 +71,42 @@ core::Result<void> note_address(const fs::path& folder, const Database& database
   if (!database.is_shared() || is_there(folder / kAddressFile)) return {};
   const std::string kept = store::has_password(database.address) ? "" : database.address;
   return core::write_file(folder / kAddressFile, core::bytes_of(kept + "\n"));
+}
+
+namespace {
+
+/// The numbers of the steps that were applied.
+core::Result<std::set<std::int64_t>> applied_steps(const Database& database) {
+  std::unique_ptr<store::Connection> connection;
+  if (database.is_shared()) {
+    connection = store::postgres_connection(database.address, store::Access::read);
+  } else {
+    connection = TRY(store::open_sqlite(database.file, store::Access::read));
+  }
+  TRY(connection->begin(store::Access::read));
+  auto rows = TRY(connection->query("select version from schema_versions", {}));
+  std::set<std::int64_t> out;
+  for (const store::Row& row : rows) out.insert(row.integer(0));
+  return out;
+}
+
+}  // namespace
+
+core::Result<std::int64_t> schema_of(const Database& database) {
+  const auto steps = TRY(applied_steps(database));
+  return steps.empty() ? 0 : *steps.rbegin();
+}
+
+core::Result<void> check_up_to_date(const Database& database) {
+  const auto applied = TRY(applied_steps(database));
+  for (const store::Migration& step : store::migrations())
+    if (!applied.contains(step.version))
+      return core::Error{
+          core::Errc::conflict,
+          fmt::format("{}: the records are of an earlier version, without migration {:04}_{}: use "
+                      "that version's programs, or upgrade (tractus-server serve or migrate)",
+                      database.name(), step.version, step.name)};
+  return {};
 }
 
 core::Result<void> use_address(const std::string& address) {

@@ -34,6 +34,12 @@ core::Result<Database> new_database(const std::filesystem::path& folder);
 /// Notes in the folder where its records are, when they are not in it.
 core::Result<void> note_address(const std::filesystem::path& folder, const Database& database);
 
+/// The number of the newest step that was applied; nothing is brought up to date.
+core::Result<std::int64_t> schema_of(const Database& database);
+/// For commands that leave the schema as it is: a server of the version before may be at work.
+/// Errors: conflict when a step of this version is missing.
+core::Result<void> check_up_to_date(const Database& database);
+
 /// Takes an address from the command line, where anybody may read it. Errors: bad_input when it
 /// holds a password.
 core::Result<void> use_address(const std::string& address);

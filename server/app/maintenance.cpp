@@ -192,6 +192,7 @@ core::Result<core::ScratchFolder> scratch_for(const fs::path& target) {
 core::Result<core::Json> back_up(const fs::path& data, const fs::path& out,
                                  const core::Progress& shown) {
   auto source = TRY(database_of(data));
+  TRY(check_up_to_date(source));  // else that version could not read the backup
   auto scratch = TRY(scratch_for(out));
   const fs::path& to = scratch.path();
   // Anchors before the records: what they note is in the records then.

@@ -13,7 +13,7 @@ inline constexpr const char* kBackupManifest = "backup.json";  ///< in every bac
 /// (those of a PostgreSQL database too, as a SQLite file, so that a backup is whole by itself),
 /// every object it names (checked on the way), what of unfinished uploads is acknowledged, keys and
 /// certificates, and backup.json with what is in it. `out` appears whole or not at all.
-/// Errors: conflict (`out` exists), corrupt (an object is not what its name says), io, cancelled.
+/// Errors: conflict (`out` exists; records of an earlier version), corrupt (an object is not what its name says), io, cancelled.
 core::Result<core::Json> back_up(const std::filesystem::path& data,
                                  const std::filesystem::path& out, const core::Progress& shown);
 

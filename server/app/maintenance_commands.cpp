@@ -3,7 +3,6 @@
 
 #include "core/clock.hpp"
 #include "core/try.hpp"
-#include "db/store/database/migrations.hpp"
 #include "server/app/anchors.hpp"
 #include "server/app/command.hpp"
 #include "server/app/maintenance.hpp"
@@ -13,20 +12,6 @@ namespace app {
 namespace {
 
 constexpr std::size_t kShown = 20;
-
-/// Without bringing it up to date.
-core::Result<std::int64_t> schema_of(const Database& database) {
-  std::unique_ptr<store::Connection> connection;
-  if (database.is_shared()) {
-    connection = store::postgres_connection(database.address, store::Access::read);
-  } else {
-    auto opened = TRY(store::open_sqlite(database.file, store::Access::read));
-    connection = std::move(opened);
-  }
-  TRY(connection->begin(store::Access::read));
-  auto rows = TRY(connection->query("select coalesce(max(version), 0) from schema_versions", {}));
-  return rows.front().integer(0);
-}
 
 std::string coverage_text(const Examined& e) {
   if (e.found.covered_since_utc_us == 0)
@@ -81,7 +66,7 @@ enum class Covered { must_be, may_be };
 
 core::Result<int> verified(const Common& common, Covered covered,
                            const std::optional<std::filesystem::path>& anchors = {}) {
-  auto data = TRY(open_data(common.data));
+  auto data = TRY(open_up_to_date(common.data));
   auto examined = TRY(examine(data, core::terminal_progress("Checking"), anchors));
   if (covered == Covered::must_be && examined.found.covered_since_utc_us == 0)
     examined.found.lines.push_back("audit trail: it does not cover the rows of tables");
@@ -137,7 +122,7 @@ Run verify_command(CLI::App& command) {
 Run anchor_command(CLI::App& command) {
   const auto common = common_options(command);
   return [=]() -> core::Result<int> {
-    auto data = TRY(open_data(common->data));
+    auto data = TRY(open_up_to_date(common->data));
     auto wrong = TRY(check_anchors(common->data, data.secrets.audit_key()));
     const auto act = command_act("anchor", {{"findings", wrong.findings}});
     TRY(data.store.write(

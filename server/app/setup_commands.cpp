@@ -105,7 +105,7 @@ Run enrol_command(CLI::App& command) {
     if (name->empty() || name->size() > api::kMaxName)
       return core::Error{core::Errc::bad_input,
                          fmt::format("--name: 1 to {} characters are expected", api::kMaxName)};
-    auto data = TRY(open_data(common->data));
+    auto data = TRY(open_up_to_date(common->data));
     const std::string token = api::new_token();
     TRY(write_secret(*out, token));
     const store::AuditScope acting(command_act("enrol", {{"name", *name}}));
@@ -131,7 +131,7 @@ Run publish_command(CLI::App& command) {
   const auto bundle = std::make_shared<std::filesystem::path>();
   command.add_option("bundle", *bundle, "Folder of the case that `tractus carve` made")->required();
   return [=]() -> core::Result<int> {
-    auto data = TRY(open_data(common->data));
+    auto data = TRY(open_up_to_date(common->data));
     auto id = TRY(publish(data, *bundle));
     say(common->json, {{"case_id", id}}, "published case " + id);
     return 0;

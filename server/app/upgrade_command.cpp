@@ -40,7 +40,9 @@ std::string plan_text(const std::vector<store::Migration>& steps) {
                                 steps.size() == 1 ? "" : "s");
   for (const store::Migration& step : steps)
     out += fmt::format("\n  {:04} {}", step.version, step.name);
-  return out + "\neach was tried just now and succeeded; make a backup before you upgrade";
+  return out +
+         "\neach was tried just now and succeeded; keep a backup that the version before made: it "
+         "reads no later one";
 }
 
 }  // namespace
