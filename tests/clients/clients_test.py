@@ -199,7 +199,7 @@ class CuttingServer(http.server.ThreadingHTTPServer):
 
     def __init__(self):
         super().__init__(("127.0.0.1", 0), Handler)
-        self.content, self.cuts, self.cut_bytes, self.runs = cohort_zip(), 0, 40_000, 0
+        self.content, self.cuts, self.cut_bytes, self.runs, self.tag = cohort_zip(), 0, 40_000, 0, None
         threading.Thread(target=self.serve_forever, daemon=True).start()
 
     @property
@@ -223,6 +223,15 @@ class Handler(http.server.BaseHTTPRequestHandler):
             content = content[:min(self.server.cut_bytes, len(content) // 2)]
             self.close_connection = True
         self.wfile.write(content)
+
+    def say_cohort(self):
+        """Goes on from a byte for who names the tag of what is here (RFC 9110, 13.1.5 and 14.2)."""
+        content, tag = self.server.content, self.server.tag
+        tagged = {"ETag": tag} if tag else {}
+        if tag is None or self.headers["If-Range"] != tag:
+            return self.say(content, kind="application/zip", **tagged)
+        first = int(self.headers["Range"].removeprefix("bytes=").removesuffix("-"))
+        self.say(content[first:], 206, "application/zip", Content_Range=f"bytes {first}-{len(content) - 1}/{len(content)}", **tagged)
 
     def refuse(self, status, error, code):
         self.say(json.dumps({"error": error, "code": code}).encode(), status)
@@ -249,7 +258,7 @@ class Handler(http.server.BaseHTTPRequestHandler):
         if path.startswith("/export/trials/"):
             return self.refuse(403, "the person consented to the tier metrics", "forbidden")
         if path == "/export/cohort.zip?tier=full":
-            return self.say(server.content, kind="application/zip")
+            return self.say_cohort()
         if path.startswith("/export/cohort.zip"):
             return self.refuse(400, "tier: summary, metrics, reduced or full is expected", "bad_input")
         if path == "/cohort/analyses/abc":
@@ -300,6 +309,32 @@ class AgainstACuttingServer(unittest.TestCase):
         self.peer.cuts = 1
         with self.assertRaisesRegex(TractusError, "the connection broke"):
             self.server.trials()
+
+    def test_a_cohort_goes_on_where_the_connection_broke(self):
+        self.peer.tag, self.peer.cuts = '"one"', 3
+        seen = []
+        self.server.cohort(self.to, tier="full", progress=seen.append)
+        self.assertEqual(self.to.read_bytes(), self.peer.content)
+        self.assertEqual(seen, sorted(seen))  # nothing came twice
+        self.assertEqual([path.name for path in Path(self.folder.name).iterdir()], ["cohort.zip"])
+
+    def test_a_cohort_that_is_another_one_by_then_begins_anew(self):
+        self.peer.tag, self.peer.cuts = '"one"', 1
+
+        def is_another(_):
+            self.peer.tag, self.peer.content = '"two"', bytes(reversed(self.peer.content))
+        self.server.cohort(self.to, tier="full", progress=lambda share: is_another(share) if self.peer.tag == '"one"' else None)
+        self.assertEqual(self.to.read_bytes(), self.peer.content)
+
+    @unittest.skipUnless(has_r("jsonlite", "curl"), "R with jsonlite and curl is not installed")
+    def test_r_goes_on_where_the_connection_broke(self):
+        self.peer.tag, self.peer.cuts = '"one"', 3
+        ran = run_r(f"""
+tractus_cohort(tractus_server("{self.peer.url}", "tractus_good"), "{self.to}", tier = "full")
+""")
+        self.assertEqual(ran.returncode, 0, ran.stderr)
+        self.assertEqual(self.to.read_bytes(), self.peer.content)
+        self.assertEqual([path.name for path in Path(self.folder.name).iterdir()], ["cohort.zip"])
 
     def test_an_analysis_is_awaited(self):
         self.assertEqual(self.server.analyse("anova", "correct ~ level")["result"], {"p": 0.5})
