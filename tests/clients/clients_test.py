@@ -30,6 +30,11 @@ try:
 except ImportError:
     numpy = None
 
+try:
+    import h5py
+except ImportError:
+    h5py = None
+
 R_SOURCES = 'for (file in list.files("%s", full.names = TRUE)) source(file)\n' % (ROOT / "deploy/clients/r/R")
 
 
@@ -159,9 +164,9 @@ cat("all numbers agree")
 
 
 DICTIONARY = ("table,column,type,unit,meaning\r\ntrials,trial,text,,\r\ntrials,case,text,,\r\ntrials,days,number,d,\r\n"
-              "trials,correct,truth,,\r\nprobing,t_s,number,s,\r\nprobing,x_m,number,m,\r\n")
+              "trials,correct,truth,,\r\ntrials,rig,text,,\r\nprobing,t_s,number,s,\r\nprobing,x_m,number,m,\r\n")
 # A pseudonym that a careless reader takes for a number, a title with a quote, a comma and a line break, and no value.
-TRIALS = 'trial,case,days,correct\r\n12e5,"L3 ""left"", \nsecond line",1.5,1\r\n00ff,plain,0,\r\n'
+TRIALS = 'trial,case,days,correct,rig\r\n12e5,"L3 ""left"", \nsecond line",1.5,1,probing\r\n00ff,plain,0,,probing\r\n'
 # Three people of a study: B is right 1 of 2 times, and in 1 of 1 with a breach; a trial of A does not count. Counted by hand.
 STUDY = ("trial,participant,level,experience_years,case,simulated,counts,correct\r\n1,B,resident,0,Hard,1,1,0\r\n"
          "2,B,resident,0,Lateral breach,1,1,1\r\n3,A,senior,6,\"In, out and in again\",1,1,\r\n4,A,senior,6,Lateral breach,1,0,1\r\n"
@@ -199,7 +204,7 @@ class CuttingServer(http.server.ThreadingHTTPServer):
 
     def __init__(self):
         super().__init__(("127.0.0.1", 0), Handler)
-        self.content, self.cuts, self.cut_bytes, self.runs = cohort_zip(), 0, 40_000, 0
+        self.content, self.cuts, self.cut_bytes, self.runs, self.tag = cohort_zip(), 0, 40_000, 0, None
         threading.Thread(target=self.serve_forever, daemon=True).start()
 
     @property
@@ -223,6 +228,15 @@ class Handler(http.server.BaseHTTPRequestHandler):
             content = content[:min(self.server.cut_bytes, len(content) // 2)]
             self.close_connection = True
         self.wfile.write(content)
+
+    def say_cohort(self):
+        """Goes on from a byte for who names the tag of what is here (RFC 9110, 13.1.5 and 14.2)."""
+        content, tag = self.server.content, self.server.tag
+        tagged = {"ETag": tag} if tag else {}
+        if tag is None or self.headers["If-Range"] != tag:
+            return self.say(content, kind="application/zip", **tagged)
+        first = int(self.headers["Range"].removeprefix("bytes=").removesuffix("-"))
+        self.say(content[first:], 206, "application/zip", Content_Range=f"bytes {first}-{len(content) - 1}/{len(content)}", **tagged)
 
     def refuse(self, status, error, code):
         self.say(json.dumps({"error": error, "code": code}).encode(), status)
@@ -249,7 +263,7 @@ class Handler(http.server.BaseHTTPRequestHandler):
         if path.startswith("/export/trials/"):
             return self.refuse(403, "the person consented to the tier metrics", "forbidden")
         if path == "/export/cohort.zip?tier=full":
-            return self.say(server.content, kind="application/zip")
+            return self.say_cohort()
         if path.startswith("/export/cohort.zip"):
             return self.refuse(400, "tier: summary, metrics, reduced or full is expected", "bad_input")
         if path == "/cohort/analyses/abc":
@@ -270,8 +284,8 @@ class AgainstACuttingServer(unittest.TestCase):
 
     def test_tables_keep_texts_and_numbers_apart(self):
         trials = self.server.trials()
-        self.assertEqual(trials[0], {"trial": "12e5", "case": TITLE, "days": 1.5, "correct": True})
-        self.assertEqual(trials[1], {"trial": "00ff", "case": "plain", "days": 0.0, "correct": None})
+        self.assertEqual(trials[0], {"trial": "12e5", "case": TITLE, "days": 1.5, "correct": True, "rig": "probing"})
+        self.assertEqual(trials[1], {"trial": "00ff", "case": "plain", "days": 0.0, "correct": None, "rig": "probing"})
         self.assertEqual([row["trial"] for row in self.server.trials(case="plain")], ["00ff"])
 
     def test_the_stream_passes_over_who_did_not_consent(self):
@@ -289,6 +303,28 @@ class AgainstACuttingServer(unittest.TestCase):
             with self.assertRaisesRegex(TractusError, "no samples"):
                 cohort.samples("00ff")
 
+    @unittest.skipUnless(h5py and shutil.which("h5dump"), "h5py or h5dump is not installed")
+    def test_a_cohort_becomes_one_hdf5_file(self):
+        """Read back by the HDF Group's own h5dump."""
+        self.to.write_bytes(self.peer.content)
+        to = self.to.with_suffix(".h5")
+        with read_cohort(self.to) as cohort:
+            cohort.write_hdf5(to)
+
+        def dumped(*options):
+            text = subprocess.run(["h5dump", *options, to], capture_output=True, text=True, check=True).stdout
+            return " ".join(text.split())
+        samples = dumped("-p", "-d", "/samples/12e5")
+        self.assertIn("H5T_IEEE_F64LE DATASPACE SIMPLE { ( 2, 2 ) / ( 2, 2 ) } STORAGE_LAYOUT { CHUNKED ( 2, 2 )", samples)
+        self.assertIn("DATA { (0,0): 0, 1, (1,0): 0.001, 2 }", samples)
+        self.assertIn('(0): "t_s", "x_m"', samples)
+        self.assertIn('(0): "s", "m"', samples)
+        self.assertIn("DATA { (0): 1.5, 0 }", dumped("-d", "/trials/days"))
+        self.assertIn('ATTRIBUTE "unit"', dumped("-d", "/trials/days"))
+        self.assertIn("DATA { (0): 1, -1 }", dumped("-d", "/trials/correct"))
+        self.assertIn('(0): "12e5", "00ff"', dumped("-d", "/trials/trial"))
+        self.assertIn('(0): "tractus-cohort-hdf5/1"', dumped("-a", "/format"))
+
     def test_a_cut_answer_is_no_answer(self):
         self.peer.cuts = 1
         with self.assertRaisesRegex(TractusError, "broke after 40000 of [0-9]+ bytes"):
@@ -300,6 +336,32 @@ class AgainstACuttingServer(unittest.TestCase):
         self.peer.cuts = 1
         with self.assertRaisesRegex(TractusError, "the connection broke"):
             self.server.trials()
+
+    def test_a_cohort_goes_on_where_the_connection_broke(self):
+        self.peer.tag, self.peer.cuts = '"one"', 3
+        seen = []
+        self.server.cohort(self.to, tier="full", progress=seen.append)
+        self.assertEqual(self.to.read_bytes(), self.peer.content)
+        self.assertEqual(seen, sorted(seen))  # nothing came twice
+        self.assertEqual([path.name for path in Path(self.folder.name).iterdir()], ["cohort.zip"])
+
+    def test_a_cohort_that_is_another_one_by_then_begins_anew(self):
+        self.peer.tag, self.peer.cuts = '"one"', 1
+
+        def is_another(_):
+            self.peer.tag, self.peer.content = '"two"', bytes(reversed(self.peer.content))
+        self.server.cohort(self.to, tier="full", progress=lambda share: is_another(share) if self.peer.tag == '"one"' else None)
+        self.assertEqual(self.to.read_bytes(), self.peer.content)
+
+    @unittest.skipUnless(has_r("jsonlite", "curl"), "R with jsonlite and curl is not installed")
+    def test_r_goes_on_where_the_connection_broke(self):
+        self.peer.tag, self.peer.cuts = '"one"', 3
+        ran = run_r(f"""
+tractus_cohort(tractus_server("{self.peer.url}", "tractus_good"), "{self.to}", tier = "full")
+""")
+        self.assertEqual(ran.returncode, 0, ran.stderr)
+        self.assertEqual(self.to.read_bytes(), self.peer.content)
+        self.assertEqual([path.name for path in Path(self.folder.name).iterdir()], ["cohort.zip"])
 
     def test_an_analysis_is_awaited(self):
         self.assertEqual(self.server.analyse("anova", "correct ~ level")["result"], {"p": 0.5})

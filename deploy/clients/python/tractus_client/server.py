@@ -13,7 +13,8 @@ from .errors import TractusError
 from .tables import COHORT_TEXTS, kinds_in, parse_table
 
 _PIECE = 1 << 20
-_MOST_MAKING_S = 900  # the server makes the whole zip of a cohort before its first byte
+_MOST_MAKING_S = 900  # for samples at 100 Hz the server reads every trial before its first byte
+_MOST_STALLED = 5  # connections in a row that bring nothing
 
 
 class Server:
@@ -35,11 +36,11 @@ class Server:
 
     # --- asking ---
 
-    def _open(self, method, path, query=None, body=None, timeout_s=None):
+    def _open(self, method, path, query=None, body=None, timeout_s=None, more_headers=None):
         given = {key: value for key, value in (query or {}).items() if value is not None}
         address = f"{self.url}/api/v1{path}" + (f"?{urllib.parse.urlencode(given)}" if given else "")
         data = None if body is None else json.dumps(body).encode()
-        headers = {**self._headers, **({"Content-Type": "application/json"} if data is not None else {})}
+        headers = {**self._headers, **({"Content-Type": "application/json"} if data is not None else {}), **(more_headers or {})}
         request = urllib.request.Request(address, data=data, headers=headers, method=method)
         try:
             return urllib.request.urlopen(request, timeout=timeout_s or self.timeout_s, context=self._tls)
@@ -125,23 +126,27 @@ class Server:
 
     def cohort(self, to, study=None, tier="metrics", progress=None):
         """Downloads a zip of the tables and, for the tiers reduced and full, the samples to the file `to`, which appears when it
-        is whole; `read_cohort` reads it. @param progress  called with the share that has come, 0 to 1"""
-        part = f"{to}.part"
-        with self._open("GET", "/export/cohort.zip", {"study": study, "tier": tier}, timeout_s=_MOST_MAKING_S) as answer:
-            size, done = int(answer.headers["Content-Length"]), 0
-            with open(part, "wb") as file:
+        is whole; `read_cohort` reads it. Goes on where a connection broke, and begins anew when the cohort is another one by then.
+        @param progress  called with the share that has come, 0 to 1"""
+        download = _Download(f"{to}.part", progress)
+        try:
+            while not download.is_whole():
+                download.wait()
                 try:
-                    while piece := answer.read(_PIECE):
-                        file.write(piece)
-                        done += len(piece)
-                        if progress:
-                            progress(done / size)
-                except (OSError, http.client.HTTPException):
-                    pass  # the length says it below
-        if done != size:
-            os.remove(part)
-            raise TractusError(f"{to}: the connection broke after {done} of {size} bytes: ask again, or for one study or a lower tier")
-        os.replace(part, to)
+                    with self._open("GET", "/export/cohort.zip", {"study": study, "tier": tier}, timeout_s=_MOST_MAKING_S,
+                                    more_headers=download.headers()) as answer:
+                        download.take(answer)
+                except TractusError as error:
+                    if error.status is not None or download.tag is None:
+                        raise
+                    download.stalled += 1
+                if download.is_stuck():
+                    raise TractusError(f"{to}: the connection broke after {download.done} of {download.size} bytes: ask again, "
+                                       "or for one study or a lower tier")
+            os.replace(download.part, to)
+        finally:
+            if os.path.exists(download.part):
+                os.remove(download.part)
 
     # --- analyses ---
 
@@ -173,6 +178,47 @@ class Server:
         if run["state"] != "done":
             raise TractusError(f"the analysis failed: {run['error']}")
         return self.analysis(run["id"])
+
+
+class _Download:
+    """A file that comes over as many connections as it takes."""
+
+    def __init__(self, part, progress):
+        self.part, self._progress = part, progress
+        self.tag, self.done, self.size = None, 0, None
+        self.stalled = 0  # connections in a row that brought nothing
+
+    def is_whole(self):
+        return self.done == self.size
+
+    def is_stuck(self):
+        """Without a tag nothing says that what follows belongs to what has come."""
+        return not self.is_whole() and (self.tag is None or self.stalled >= _MOST_STALLED)
+
+    def wait(self):
+        time.sleep(self.stalled)
+
+    def headers(self):
+        return {"Range": f"bytes={self.done}-", "If-Range": self.tag} if self.done else {}
+
+    def take(self, answer):
+        if answer.status != 206:
+            self.done = 0
+        before, self.tag = self.done, answer.headers["ETag"]
+        self.size = self.done + int(answer.headers["Content-Length"])
+        with open(self.part, "ab" if self.done else "wb") as file:
+            try:
+                while piece := answer.read(_PIECE):
+                    file.write(piece)
+                    self.done += len(piece)
+                    if self._progress:
+                        self._progress(self.done / self.size)
+            except http.client.IncompleteRead as cut:
+                file.write(cut.partial)
+                self.done += len(cut.partial)
+            except (OSError, http.client.HTTPException):
+                pass  # the size tells
+        self.stalled = 0 if self.done > before else self.stalled + 1
 
 
 def _refusal(method, path, error):

@@ -18,10 +18,10 @@ address_of <- function(server, path, query = list()) {
   paste0(server$url, "/api/v1", path, if (length(query)) paste0("?", words) else "")
 }
 
-# A server makes the whole zip of a cohort before its first byte: 15 minutes of silence are waited for.
-handle_of <- function(server, method = "GET", body = NULL) {
+# For samples at 100 Hz a server reads every trial before its first byte: 15 minutes of silence are waited for.
+handle_of <- function(server, method = "GET", body = NULL, headers = list()) {
   handle <- curl::new_handle(customrequest = method, connecttimeout = 30, low_speed_limit = 1, low_speed_time = 900)
-  headers <- list(Authorization = paste("Bearer", server$token))
+  headers$Authorization <- paste("Bearer", server$token)
   if (!is.null(body)) {
     text <- jsonlite::toJSON(body, auto_unbox = TRUE, null = "null", digits = NA)
     curl::handle_setopt(handle, postfields = as.character(text))
@@ -125,17 +125,48 @@ tractus_each_trial <- function(server, what, study = NULL, rate_Hz = 100, ...) {
 }
 
 #' Downloads a zip of the tables and, for the tiers reduced and full, the samples to the file `to`, which appears when it is whole;
-#' read_cohort reads it.
+#' read_cohort reads it. Goes on where a connection broke, and begins anew when the cohort is another one by then.
 tractus_cohort <- function(server, to, study = NULL, tier = "metrics") {
   part <- paste0(to, ".part")
   on.exit(unlink(part))
   address <- address_of(server, "/export/cohort.zip", list(study = study, tier = tier))
-  answer <- tryCatch(curl::curl_fetch_disk(address, part, handle_of(server)),
-                     error = function(e) stop(to, ": the connection broke: ", conditionMessage(e), call. = FALSE))
-  if (answer$status_code >= 400)
-    refuse("GET", "/export/cohort.zip", answer$status_code, readBin(part, "raw", file.size(part)))
+  tag <- NULL
+  stalled <- 0
+  done <- 0
+  repeat {
+    Sys.sleep(stalled)
+    headers <- if (done > 0) list(Range = sprintf("bytes=%.0f-", done), `If-Range` = tag) else list()
+    came <- take_rest(address, handle_of(server, headers = headers), part)
+    if (is.null(came$failure)) break
+    if (!is.null(came$tag)) tag <- came$tag
+    # Without a tag nothing says that what follows belongs to what has come.
+    if (is.null(tag) || stalled == 5) stop(to, ": the connection broke: ", came$failure, call. = FALSE)
+    now <- if (file.exists(part)) file.size(part) else 0
+    stalled <- if (now == done) stalled + 1 else 0
+    done <- now
+  }
   if (!file.rename(part, to)) stop(to, ": cannot be written", call. = FALSE)
   invisible(to)
+}
+
+# Puts what comes into the file, behind what is there if the server says so. Returns the entity tag, and what broke.
+take_rest <- function(address, handle, part) {
+  file <- NULL
+  refusal <- raw()
+  take <- function(bytes) {
+    status <- curl::handle_data(handle)$status_code
+    if (status >= 400) {
+      refusal <<- c(refusal, bytes)
+    } else {
+      if (is.null(file)) file <<- base::file(part, if (status == 206) "ab" else "wb")
+      writeBin(bytes, file)
+    }
+  }
+  failure <- tryCatch({ curl::curl_fetch_stream(address, take, handle); NULL }, error = conditionMessage)
+  if (!is.null(file)) close(file)
+  answer <- curl::handle_data(handle)
+  if (answer$status_code >= 400) refuse("GET", "/export/cohort.zip", answer$status_code, refusal)
+  list(tag = curl::parse_headers_list(answer$headers)$etag, failure = failure)
 }
 
 tractus_plans <- function(server) tractus_ask(server, "GET", "/cohort/plans")$plans
