@@ -17,8 +17,8 @@ namespace {
 using core::Errc;
 using core::Error;
 
-constexpr double kStep = 2e-3;      // of differences in θ, whose entries are of order 1
-constexpr double kSingular = 1e-4;  // as lme4's isSingular: relative to σ
+constexpr double kThetaStep = 2e-3;  // of differences in θ, whose entries are of order 1
+constexpr double kSingular = 1e-4;   // as lme4's isSingular: relative to σ
 
 /// The criterion of given data as a function of θ.
 class ProfiledCriterion {
@@ -56,14 +56,14 @@ class ProfiledCriterion {
 /// A variance at 0 may be a local minimum: θ² is tried at some sizes there.
 Vector least(const ProfiledCriterion& problem, Likelihood how, const ScalarField& f,
              bool& converged) {
-  Minimum best = minimise(f, problem.squares().start(), kStep);
+  Minimum best = minimise(f, problem.squares().start(), kThetaStep);
   for (Eigen::Index i = 0; i < best.x.size(); ++i) {
     if (std::abs(best.x[i]) > 1e-3) continue;
     for (const double size : {0.03, 0.3}) {
       Vector from = best.x;
       from[i] = size;
       if (problem.criterion(from, how) < best.value - 1e-8) {
-        const Minimum again = minimise(f, from, kStep);
+        const Minimum again = minimise(f, from, kThetaStep);
         if (again.value < best.value) best = again;
       }
     }
@@ -118,8 +118,8 @@ void add_curvature(const ProfiledCriterion& problem, Likelihood how, const Vecto
   };
   const auto rss = [&](const Vector& at) { return problem.solve(at).rss; };
   Matrix hessian(m + 1, m + 1);
-  hessian.topLeftCorner(m, m) = numeric_hessian(fixed_sigma, theta, 4.0 * kStep);
-  const Vector cross = -2.0 / (sigma2 * sigma) * numeric_gradient(rss, theta, kStep);
+  hessian.topLeftCorner(m, m) = numeric_hessian(fixed_sigma, theta, 4.0 * kThetaStep);
+  const Vector cross = -2.0 / (sigma2 * sigma) * numeric_gradient(rss, theta, kThetaStep);
   hessian.col(m).head(m) = cross;
   hessian.row(m).head(m) = cross.transpose();
   hessian(m, m) = 6.0 * rss(theta) / (sigma2 * sigma2) - 2.0 * df / sigma2;
@@ -130,7 +130,7 @@ void add_curvature(const ProfiledCriterion& problem, Likelihood how, const Vecto
       at[i] += shift;
       return Matrix(sigma2 * unscaled_covariance(problem, problem.everything(at)));
     };
-    const double h = kStep;
+    const double h = kThetaStep;
     out.covariance_slope.push_back((covariance_at(-2 * h) - 8.0 * covariance_at(-h) +
                                     8.0 * covariance_at(h) - covariance_at(2 * h)) /
                                    (12.0 * h));
