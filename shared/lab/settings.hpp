@@ -53,9 +53,6 @@ struct ProbingRecordingSettings {
   double least_fit_rate_Hz = 800.0;
   /// A sample is at rest below so many standard errors of its speed. Tuned.
   double rest_errors = 3.0;
-  /// The sensor's noise is what the quietest stretches of this length hold: long against the time over which filters
-  /// correlate it, short against most of what bone does. Tuned.
-  double quiet_stretch_s = 0.3;
   /// Time round a layer's border that is not judged at the full rate. Tuned.
   double border_s = 0.005;
   /// Or so many samples, if that is longer. Tuned.

@@ -357,8 +357,6 @@ double variance_within(std::span<const double> y, std::size_t length) {
   return *quietest / (root * root * root);
 }
 
-constexpr std::size_t kFewest = 4;  // outputs of a stretch
-
 /// What errors of single samples, all one way, make of an output: no more than the greatest of them.
 double passed_on(std::span<const double> errors, const Decimator& decimator, std::size_t output) {
   const std::size_t middle = decimator.middle(output), half = decimator.half() + 1;
@@ -374,16 +372,11 @@ double passed_on(std::span<const double> errors, const Decimator& decimator, std
 void estimate_noise(ProbingRecording& r, std::span<const double> residual,
                     std::span<const double> thin) {
   const double gain = r.decimator.noise_gain();
-  // What a model misses is in what it leaves, what it does not miss is in the force: each is a bound. Third differences
-  // see only a part of noise that lasts from one output to the next.
-  const double white_sd =
+  // What a model misses is in what it leaves, what it does not miss is in the force: each is a bound.
+  const double slow_sd =
       std::min(noise_sd(thin, kQuietestQuantile), noise_sd(r.measured_thin, kQuietestQuantile)) *
       std::sqrt(gain / r.decimator.third_difference_gain());
-  const auto stretch = std::max(
-      kFewest, std::size_t(kProbingRecording.quiet_stretch_s * double(thin.size()) / r.seconds()));
-  const double coloured =
-      std::min(variance_within(thin, stretch), variance_within(r.measured_thin, stretch));
-  r.slow_noise_sd = std::max({r.slow_noise_sd, white_sd, std::sqrt(coloured)});
+  r.slow_noise_sd = std::max(r.slow_noise_sd, slow_sd);
   const std::size_t stride = r.decimator.stride();
   if (stride < 4) {
     if (stride == 1) r.noise_sd = std::max(r.noise_sd, r.slow_noise_sd);
