@@ -1,5 +1,5 @@
 // @vitest-environment node
-import { expect, it } from 'vitest';
+import { expect, it, vi } from 'vitest';
 import { dicomSeries, middleSlice } from './dicom-series';
 
 /** A data element in Explicit VR Little Endian (DICOM PS3.5, section 7.1.2). */
@@ -108,4 +108,18 @@ it('has no picture of compressed pixels', async () => {
 
 it('finds nothing in files that are no DICOM', async () => {
   expect(await dicomSeries([{ path: 'L3.nrrd', file: new File(['NRRD0005'], 'L3.nrrd') }])).toEqual([]);
+});
+
+it('reads only the beginning of a file that is no DICOM, which may be a volume of a gigabyte', async () => {
+  const file = new File([new Uint8Array(1_000_000)], 'L3.nii');
+  const whole = vi.spyOn(file, 'arrayBuffer');
+  const read = vi.spyOn(file, 'slice');
+  await dicomSeries([{ path: 'L3.nii', file }]);
+  expect(whole).not.toHaveBeenCalled();
+  expect(read.mock.calls).toEqual([[0, 65_536]]);
+});
+
+it('leaves out a file that ends in the middle', async () => {
+  const { path, file } = slice('1.2.3.4', 0);
+  expect(await dicomSeries([{ path, file: new File([file.slice(0, 200)], 'cut') }])).toEqual([]);
 });

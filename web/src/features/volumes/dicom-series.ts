@@ -29,16 +29,19 @@ const kUncompressed = ['1.2.840.10008.1.2', '1.2.840.10008.1.2.1'];
 /** Bone and what is round it. */
 const kWindow = { low: -200, high: 1200 };
 
+/** A file of DICOM begins with 128 bytes of anything and these letters (PS3.10, section 7.1). */
+const isDicom = (head: Uint8Array) => String.fromCharCode(...head.subarray(128, 132)) === 'DICM';
+
 async function tagsOf({ file }: Dropped): Promise<DataSet | null> {
   const { parseDicom } = await import('dicom-parser');
-  for (const size of [kHead_bytes, file.size]) {
-    try {
-      return parseDicom(new Uint8Array(await file.slice(0, size).arrayBuffer()), { untilTag: kPixels });
-    } catch {
-      if (size >= file.size) return null;
-    }
+  const bytesOf = async (size: number) => new Uint8Array(await file.slice(0, size).arrayBuffer());
+  const head = await bytesOf(kHead_bytes);
+  if (!isDicom(head)) return null;
+  try {
+    return parseDicom(head, { untilTag: kPixels });
+  } catch {
+    return parseDicom(await bytesOf(file.size), { untilTag: kPixels });
   }
-  return null;
 }
 
 function numbers(tags: DataSet, tag: string): number[] | null {
@@ -94,7 +97,7 @@ export async function dicomSeries(
 ): Promise<DicomSeries[]> {
   const groups = new Map<string, Slice[]>();
   for (const [i, one] of dropped.entries()) {
-    const tags = await tagsOf(one);
+    const tags = await tagsOf(one).catch(() => null); // a damaged file belongs to no series
     const uid = tags?.string('x0020000e')?.trim();
     if (tags && uid !== undefined) groups.set(uid, [...(groups.get(uid) ?? []), { dropped: one, tags }]);
     onFile(i + 1);
