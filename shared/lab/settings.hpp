@@ -437,6 +437,12 @@ struct SelectionThresholds {
   /// A trend of which the motion's memory explains this share is no sensor's; above 1: never asked.
   double drift_r2_on_motion;
   MoreMissingOdds more;
+
+  constexpr SelectionThresholds with(MoreMissingOdds other) const {
+    SelectionThresholds out = *this;
+    out.more = other;
+    return out;
+  }
 };
 
 /// The lab's settings, by stage.
@@ -447,21 +453,15 @@ struct Settings {
                                          .least_gain_of_excess = 0.004,
                                          .observations_per_trial = 12.0,
                                          .drift_r2_on_motion = 0.45,
-                                         .more = {-3.0, 6.7, 9.3}};
-  SelectionThresholds torque_thresholds{.stop_below = 1.25,
-                                        .stop_if_given_below = 0.0,
-                                        .least_gain_share = 0.12,
-                                        .least_gain_of_excess = 0.004,
-                                        .observations_per_trial = 12.0,
-                                        .drift_r2_on_motion = 0.45,
-                                        .more = {-2.1, 3.0, 9.3}};
+                                         .more = {-3.4, 5.9, 6.6}};
+  SelectionThresholds torque_thresholds = probing_thresholds.with({-2.4, 3.8, 6.6});
   SelectionThresholds palpation_thresholds{.stop_below = 0.9,
                                            .stop_if_given_below = 1.1,
                                            .least_gain_share = 0.01,
                                            .least_gain_of_excess = 0.0,
                                            .observations_per_trial = 60.0,
                                            .drift_r2_on_motion = 1.01,
-                                           .more = {-0.8, 5.2, 9.3}};
+                                           .more = {-0.8, 5.1, 6.6}};
   SmoothingSettings smoothing;
   PhasesSettings phases;
   DecimationSettings decimation;
