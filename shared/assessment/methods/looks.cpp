@@ -53,8 +53,7 @@ core::Result<Findings> run_looks(const Analysis& of) {
                    {"mean_share_used", looks.mean_share}};
   out["notes"] = {
       "at each look compare the p of the planned test with significant_where_p_below, and stop "
-      "where "
-      "it is smaller; the looks and their number are fixed before the first one"};
+      "where it is smaller; the looks and their number are fixed before the first one"};
   return Findings{std::move(out), {}};
 }
 
