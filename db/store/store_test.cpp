@@ -4,7 +4,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <chrono>
+#include <future>
 #include <limits>
+#include <thread>
 #include <type_traits>
 
 #include "core/try.hpp"
@@ -249,6 +252,27 @@ TEST_P(MigrationSteps, AreTriedWithoutAChange) {
   EXPECT_FALSE(try_migrations(*connection, {first, {2, "second", "create table a (x bigint)"}}));
   ASSERT_TRUE(migrate(*connection, {first, second}));
   EXPECT_EQ(try_migrations(*connection, {first, second})->size(), 0u);
+}
+
+/// Without giving way, PostgreSQL would end the knot of the two by failing one of them.
+TEST_P(MigrationSteps, GiveWayToAReaderOfATableThatTheyChange) {
+  const TestDatabase database(GetParam(), Content::nothing);
+  const auto connection = database.connection(Access::write);
+  const Migration first{1, "first", "create table a (x bigint); create table b (x bigint)"};
+  const Migration second{2, "second",
+                         "alter table b add column y bigint; alter table a add column y bigint"};
+  ASSERT_TRUE(migrate(*connection, {first}));
+  const auto reader = database.connection(Access::read);
+  ASSERT_TRUE(reader->begin(Access::read));
+  ASSERT_TRUE(reader->query("select x from a", {}));
+  auto migrated = std::async([&] { return migrate(*connection, {first, second}); });
+  std::this_thread::sleep_for(std::chrono::milliseconds(200));
+  const auto read = reader->query("select x from b", {});
+  EXPECT_TRUE(read) << read.error().what;
+  reader->rollback();
+  const auto done = migrated.get();
+  EXPECT_TRUE(done) << done.error().what;
+  EXPECT_TRUE(connection->query("select a.y, b.y from a, b", {}));
 }
 
 /// A database from before the column: an assignment is told by its row in `assignments`.

@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 
+#include <chrono>
 #include <set>
+#include <thread>
 
 #include "core/clock.hpp"
 #include "core/try.hpp"
@@ -55,27 +57,49 @@ core::Result<std::vector<Migration>> missing(Connection& connection,
   return out;
 }
 
+/// Who reads a table that is changed, and then one that was, waits for the migration as it waits
+/// for them. PostgreSQL ends such a knot after a second, by failing either; the migration is to
+/// give way before, and not to hold others up for long.
+constexpr const char* kShortPatience =
+    "select /*pg: set_config('lock_timeout', '500ms', true), */ 1";
+constexpr std::chrono::minutes kTriedFor{1};
+constexpr std::chrono::milliseconds kWayGiven{100};
+
 core::Result<std::vector<Migration>> run_missing(Connection& connection,
                                                  const std::vector<Migration>& steps) {
+  TRY(connection.query(kShortPatience, {}));
   auto out = TRY(missing(connection, steps));
   for (const Migration& step : out) TRY(apply(connection, step));
   return out;
 }
 
+/// Leaves a transaction open in which the missing steps have run; none if they could not.
+core::Result<std::vector<Migration>> begin_with_missing(Connection& connection,
+                                                        const std::vector<Migration>& steps) {
+  const auto end = std::chrono::steady_clock::now() + kTriedFor;
+  for (;;) {
+    TRY(connection.begin(Access::write));
+    auto run = run_missing(connection, steps);
+    if (run) return run;
+    connection.rollback();
+    if (run.error().code != core::Errc::unavailable || std::chrono::steady_clock::now() > end)
+      return run;
+    std::this_thread::sleep_for(kWayGiven);
+  }
+}
+
 }  // namespace
 
 core::Result<void> migrate(Connection& connection, const std::vector<Migration>& steps) {
-  TRY(connection.begin(Access::write));
-  const auto run = run_missing(connection, steps);
-  core::Result<void> done = run ? connection.commit() : core::Result<void>(run.error());
+  TRY(begin_with_missing(connection, steps));
+  const auto done = connection.commit();
   if (!done) connection.rollback();
   return done;
 }
 
 core::Result<std::vector<Migration>> try_migrations(Connection& connection,
                                                     const std::vector<Migration>& steps) {
-  TRY(connection.begin(Access::write));
-  auto out = run_missing(connection, steps);
+  auto out = begin_with_missing(connection, steps);
   connection.rollback();
   return out;
 }

@@ -9,7 +9,7 @@
 namespace tractus::store {
 
 struct Migration {
-  std::int64_t version;  ///< NNNN, from 1 without gaps
+  std::int64_t version;  ///< NNNN, from 1
   std::string name;
   std::string sql;
 };
@@ -18,7 +18,8 @@ struct Migration {
 std::vector<Migration> migrations();
 
 /// Brings the database to the last of `steps`, all missing steps in one transaction: a step that
-/// fails leaves the database as it was. Errors: conflict when the database is newer than the steps
+/// fails leaves the database as it was. On PostgreSQL it gives way to who uses the tables, and tries
+/// for a minute. Errors: conflict when the database is newer than the steps
 /// (a newer program made it); those of the connection.
 core::Result<void> migrate(Connection& connection, const std::vector<Migration>& steps);
 /// Runs the missing steps and rolls them back; returns which they were. The same errors.
