@@ -99,7 +99,7 @@ async function fromPacs(page: Page, check: Check): Promise<void> {
   await search.click();
   await card.getByRole('button', { name: 'Show its series' }).click();
   await card.getByRole('button', { name: 'Choose series 3' }).waitFor();
-  expect(await card.getByRole('row', { name: /bone 1\.0/ }).innerText()).toMatch(/CT\s+180\s+0\.49.mm\s+1\.00.mm/);
+  expect(await card.getByRole('row', { name: /bone 1\.0/ }).innerText()).toMatch(/CT\s+180\s+0\.49.mm\s+–\s+1\.00.mm/);
   await card.getByRole('button', { name: 'Choose series 2' }).click();
   await check('pacs');
   const begin = card.getByRole('button', { name: 'Import' });
