@@ -75,8 +75,7 @@ Result<http::Response> export_cohort(const Call& call) {
   const auto tier = core::from_name<Tier>(call.text("tier"));
   if (!tier || *tier == Tier::none)
     return Error{Errc::bad_input, "tier: summary, metrics, reduced or full is expected"};
-  auto zip = TRY(cohort_zip(call.backend, call.caller.id, study_of_call(call), *tier));
-  return scratch_response(std::move(zip), "application/zip", "cohort.zip");
+  return cohort_response(call.backend, {.study = study_of_call(call), .tier = *tier}, call.request);
 }
 
 /// Every export of this table is written into the audit trail.
@@ -151,8 +150,11 @@ std::vector<RouteInfo> export_routes() {
   RouteInfo cohort =
       export_route("cohort.zip", "exportCohort",
                    "Export a zip with tables, data dictionary and, for participants who "
-                   "consented to it, samples",
+                   "consented to it, samples, of any size; it ends before its announced length if "
+                   "a consent is withdrawn meanwhile; the headers Range and If-Range with its ETag "
+                   "resume it",
                    export_cohort);
+  cohort.lane = http::Lane::computing;
   cohort.parameters = {study,
                        {.in = Parameter::In::query,
                         .name = "tier",
