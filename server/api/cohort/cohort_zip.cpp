@@ -81,14 +81,22 @@ Result<CountedRows> count_rows(SampleRows rows, trial::Rig rig,
   return out;
 }
 
-/// Ends when a trial of the archive is no longer released.
+/// An archive that is no longer released is held no longer.
+Result<void> check_held(Backend& backend, const CohortArchive& archive) {
+  auto released = archive.check_released(backend);
+  if (!released) backend.held_cohorts.drop(archive);
+  return released;
+}
+
+/// Ends when a trial of the archive is no longer released, or who asked may not export any more.
 class ReleasedSource : public http::BodySource {
  public:
   ReleasedSource(std::shared_ptr<const CohortArchive> archive, Backend& backend,
-                 StoredZipSource source)
+                 StoredZipSource source, std::function<bool()> still_allowed)
       : archive_(std::move(archive)),
         backend_(backend),
         source_(std::move(source)),
+        still_allowed_(std::move(still_allowed)),
         checked_utc_us_(backend.now_utc_us()) {}
 
   Result<void> read(std::string& piece) override {
@@ -102,7 +110,9 @@ class ReleasedSource : public http::BodySource {
   Result<void> read_checked(std::string& piece) {
     const std::int64_t now = backend_.now_utc_us();
     if (now < checked_utc_us_ || now - checked_utc_us_ >= pause_us_) {
-      TRY(archive_->check_released(backend_));
+      if (!still_allowed_())
+        return Error{Errc::forbidden, "who asked for this export may not export any more"};
+      TRY(check_held(backend_, *archive_));
       checked_utc_us_ = backend_.now_utc_us();
       pause_us_ = std::max(kCheckedEvery_us, kLeastPause * (checked_utc_us_ - now));
     }
@@ -112,6 +122,7 @@ class ReleasedSource : public http::BodySource {
   std::shared_ptr<const CohortArchive> archive_;
   Backend& backend_;
   StoredZipSource source_;
+  std::function<bool()> still_allowed_;
   std::int64_t checked_utc_us_;
   std::int64_t pause_us_ = kCheckedEvery_us;
 };
@@ -119,7 +130,7 @@ class ReleasedSource : public http::BodySource {
 Result<std::shared_ptr<CohortArchive>> archive_for(Backend& backend, const CohortWish& wish,
                                                    const http::Request& request) {
   auto held = backend.held_cohorts.find(request.header("if-range"));
-  if (held && held->wish() == wish && held->check_released(backend)) return held;
+  if (held && held->wish() == wish && check_held(backend, *held)) return held;
   return CohortArchive::make(backend, wish, request.called_off);
 }
 
@@ -137,8 +148,19 @@ std::shared_ptr<CohortArchive> HeldCohorts::find(std::string_view entity_tag) {
 
 void HeldCohorts::keep(std::shared_ptr<CohortArchive> archive) {
   const std::lock_guard held(mutex_);
+  archives_.remove_if([&](const auto& one) { return one->entity_tag() == archive->entity_tag(); });
   archives_.push_front(std::move(archive));
   if (archives_.size() > kMost) archives_.pop_back();
+}
+
+void HeldCohorts::drop(const CohortArchive& archive) {
+  const std::lock_guard held(mutex_);
+  archives_.remove_if([&](const auto& one) { return one.get() == &archive; });
+}
+
+void HeldCohorts::forget() {
+  const std::lock_guard held(mutex_);
+  archives_.clear();
 }
 
 CohortArchive::CohortArchive(CohortWish wish, const store::ReleasedTrials& counted)
@@ -157,7 +179,7 @@ CohortArchive::CohortArchive(CohortWish wish, const store::ReleasedTrials& count
              {"trials.csv", trials_csv(listed)},
              {"scores.csv", scores_csv(listed)}};
   for (const auto& one : counted.all())
-    needed_.emplace_back(one.id, std::min(wish_.tier, one.tier));
+    needed_.push_back({one.id, one.participant, std::min(wish_.tier, one.tier)});
 }
 
 Result<void> CohortArchive::add_array(const store::ReleasedTrial& trial) {
@@ -183,9 +205,12 @@ Result<std::shared_ptr<CohortArchive>> CohortArchive::make(Backend& backend, Coh
     hash.add(core::bytes_of(std::to_string(text.size()) + ":" + text));
   };
   add("stored zip 1");
+  for (const Needed& one : out->needed_) add(one.trial), add(one.participant);
   for (const auto& [name, content] : out->tables_) add(name), add(content);
   for (const Array& array : out->arrays_)
-    add(array.name), add(array.sha256), add(std::to_string(array.rate_Hz));
+    for (const auto& text :
+         {array.name, array.sha256, std::to_string(array.rate_Hz), std::to_string(array.rows)})
+      add(text);
   out->entity_tag_ = "\"" + hash.hex().substr(0, 32) + "\"";
   if (auto held = backend.held_cohorts.find(out->entity_tag_)) return held;
   TRY(out->lay_out(backend, called_off));
@@ -215,11 +240,12 @@ Result<void> CohortArchive::lay_out(Backend& backend, const CalledOff& called_of
 
 Result<void> CohortArchive::check_released(Backend& backend) const {
   const auto now = TRY(released_trials(backend, wish_.study, Tier::summary));
-  std::unordered_map<std::string_view, Tier> tiers;
-  for (const auto& trial : now.all()) tiers[trial.id] = trial.tier;
-  const auto gone = std::ranges::count_if(needed_, [&](const auto& one) {
-    const auto at = tiers.find(one.first);
-    return at == tiers.end() || at->second < one.second;
+  std::unordered_map<std::string_view, const store::ReleasedTrial*> trials;
+  for (const auto& trial : now.all()) trials[trial.id] = &trial;
+  const auto gone = std::ranges::count_if(needed_, [&](const Needed& one) {
+    const auto at = trials.find(one.trial);
+    return at == trials.end() || at->second->tier < one.tier ||
+           at->second->participant != one.participant;
   });
   if (gone == 0) return {};
   return Error{Errc::forbidden,
@@ -240,29 +266,36 @@ OpenEntry CohortArchive::opener(const Backend& backend) {
   };
 }
 
-Result<std::shared_ptr<http::BodySource>> CohortArchive::part(Backend& backend, std::uint64_t first,
-                                                              std::uint64_t size,
-                                                              const CalledOff& called_off) {
+Result<StoredZipSource> CohortArchive::part(const Backend& backend, std::uint64_t first,
+                                            std::uint64_t size, const CalledOff& called_off) {
   const OpenEntry open = opener(backend);
   const bool in_directory = first >= zip_->directory_begin();
   if (first + size > zip_->directory_begin())
     TRY(note_checksums_before(*zip_, in_directory ? zip_->entries().size() : zip_->entry_at(first),
                               open, called_off));
-  return std::shared_ptr<http::BodySource>(std::make_shared<ReleasedSource>(
-      shared_from_this(), backend, StoredZipSource(zip_, open, first, size)));
+  return StoredZipSource(zip_, open, first, size);
 }
 
 Result<http::Response> cohort_response(Backend& backend, const CohortWish& wish,
-                                       const http::Request& request) {
+                                       const http::Request& request,
+                                       std::function<bool()> still_allowed) {
   const auto archive = TRY(archive_for(backend, wish, request));
   http::Response response;
   response.with("Content-Type", "application/zip")
       .with("Content-Disposition", "attachment; filename=\"cohort.zip\"")
+      .with("Cache-Control", "no-store")
       .with("ETag", archive->entity_tag());
-  const auto part = http::wanted_part(request, archive->size(), archive->entity_tag(), response);
-  if (!part) return response;
-  auto source = TRY(archive->part(backend, part->first, part->second, request.called_off));
-  response.body = http::MadeBody{std::move(source), part->second};
+  http::RequestHead head = request;
+  if (head.header("if-range").empty()) head.headers.erase("range");
+  const auto part = http::wanted_part(head, archive->size(), archive->entity_tag(), response);
+  if (part) {
+    auto source = TRY(archive->part(backend, part->first, part->second, request.called_off));
+    response.body =
+        http::MadeBody{std::make_shared<ReleasedSource>(archive, backend, std::move(source),
+                                                        std::move(still_allowed)),
+                       part->second};
+  }
+  TRY(check_held(backend, *archive));  // it may have taken long until here
   return response;
 }
 

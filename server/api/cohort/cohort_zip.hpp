@@ -30,15 +30,14 @@ class CohortArchive : public std::enable_shared_from_this<CohortArchive> {
   /// Differs whenever a byte of the zip differs.
   const std::string& entity_tag() const { return entity_tag_; }
   std::uint64_t size() const { return zip_->size(); }
-  /// Errors: forbidden if a trial was deleted, or is no longer released for what the archive has of
-  /// it.
+  /// Errors: forbidden if a trial was deleted, is another person's, or is no longer released for
+  /// what the archive has of it.
   core::Result<void> check_released(Backend& backend) const;
-  /// `size` bytes from `first` on; they end with an error once check_released gives one, which is
-  /// asked every second, or less often where it takes more than a tenth of one. If they reach the zip's directory, trials before `first` whose checksums are
-  /// not known are read at once. Errors: those of reading; unavailable once called off.
-  core::Result<std::shared_ptr<http::BodySource>> part(Backend& backend, std::uint64_t first,
-                                                       std::uint64_t size,
-                                                       const CalledOff& called_off);
+  /// `size` bytes from `first` on. If they reach the zip's directory, trials before `first` whose
+  /// checksums are not known are read at once. Errors: those of reading; unavailable once called
+  /// off.
+  core::Result<StoredZipSource> part(const Backend& backend, std::uint64_t first,
+                                     std::uint64_t size, const CalledOff& called_off);
 
  private:
   struct Table {
@@ -52,6 +51,11 @@ class CohortArchive : public std::enable_shared_from_this<CohortArchive> {
     trial::Rig rig;
     std::uint64_t rows;  ///< at a rate: 0 until they are counted
   };
+  /// A trial that is counted, listed or has an array here.
+  struct Needed {
+    std::string trial, participant;  ///< pseudonyms
+    store::Tier tier;                ///< at which it is here
+  };
   CohortArchive(CohortWish wish, const store::ReleasedTrials& counted);
   core::Result<void> add_array(const store::ReleasedTrial& trial);
   core::Result<void> lay_out(Backend& backend, const CalledOff& called_off);
@@ -60,16 +64,18 @@ class CohortArchive : public std::enable_shared_from_this<CohortArchive> {
   CohortWish wish_;
   std::vector<Table> tables_;  ///< the first entries
   std::vector<Array> arrays_;  ///< the entries after them
-  /// Each trial, by pseudonym, with the tier at which the archive has it.
-  std::vector<std::pair<std::string, store::Tier>> needed_;
+  std::vector<Needed> needed_;
   std::string entity_tag_;
   std::shared_ptr<StoredZip> zip_;
 };
 
-/// The answer to a request for a cohort: the whole, or the part that its header Range names. With
-/// If-Range it is the archive of that entity tag, as long as it is held and still released.
-/// Errors: those of CohortArchive.
+/// The answer to a request for a cohort. With If-Range it is the part that Range names of the
+/// archive of that entity tag, as long as it is held and still released; without, it is the whole:
+/// nobody joins parts of two cohorts. Once check_released gives an error or `still_allowed` is false
+/// the body ends with an error; both are asked every second, or less often where they take more than
+/// a tenth of one. Errors: those of CohortArchive.
 core::Result<http::Response> cohort_response(Backend& backend, const CohortWish& wish,
-                                             const http::Request& request);
+                                             const http::Request& request,
+                                             std::function<bool()> still_allowed);
 
 }  // namespace tractus::api

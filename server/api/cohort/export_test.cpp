@@ -41,7 +41,7 @@ class Export : public PeopleTest {
   }
   /// A trial file of 1 kHz whose depth is 1e-6 m a tick, in place of tom's.
   void write_toms_trial(std::uint32_t samples) {
-    const auto path = folder_.path() / "trial";
+    const auto path = folder_.path() / fmt::format("trial-{}", samples);
     trial::Header header;
     header.id = trial_of("tom");
     header.case_id = testing::kCase;
@@ -234,17 +234,28 @@ TEST_F(Export, ADownloadGoesOnWhereItBroke) {
   const auto whole = cohort("full");
   const std::string bytes = text(whole), tag(whole.header("ETag"));
   for (const std::size_t first : {std::size_t{1}, bytes.size() / 2, bytes.size() - 30}) {
-    const auto rest = cohort("full", {{"range", fmt::format("bytes={}-", first)}});
+    const auto rest =
+        cohort("full", {{"range", fmt::format("bytes={}-", first)}, {"if-range", tag}});
     EXPECT_EQ(rest.status, 206);
     EXPECT_EQ(rest.header("Content-Range"),
               fmt::format("bytes {}-{}/{}", first, bytes.size() - 1, bytes.size()));
     EXPECT_EQ(text(rest), bytes.substr(first));
   }
-  EXPECT_EQ(cohort("full", {{"range", fmt::format("bytes={}-", bytes.size())}}).status, 416);
+  const std::string beyond = fmt::format("bytes={}-", bytes.size());
+  EXPECT_EQ(cohort("full", {{"range", beyond}, {"if-range", tag}}).status, 416);
   forget_archives();  // as after a restart: the checksums of what was sent are made anew
   const auto last = cohort("full", {{"range", "bytes=-500"}, {"if-range", tag}});
   EXPECT_EQ(last.status, 206);
   EXPECT_EQ(text(last), bytes.substr(bytes.size() - 500));
+}
+
+/// A part of another cohort behind what a client has would be a file of two cohorts.
+TEST_F(Export, ARangeThatNamesNoCohortGetsTheWhole) {
+  write_toms_trial(1000);
+  const std::string bytes = zipped("full");
+  const auto whole = cohort("full", {{"range", "bytes=1000-"}});
+  EXPECT_EQ(whole.status, 200);
+  EXPECT_EQ(text(whole), bytes);
 }
 
 TEST_F(Export, ADownloadGoesOnAlthoughATrialCameIn) {
@@ -280,6 +291,41 @@ TEST_F(Export, AWithdrawnConsentEndsADownload) {
     EXPECT_EQ(rest.status, 200) << "begins anew";
     EXPECT_LT(text(rest).size(), body.size) << "without the samples that were withdrawn";
   }
+}
+
+TEST_F(Export, WhoLeftIsInNothingThatIsSentOrHeld) {
+  for (const char* mode : {"anonymise", "erase"}) {
+    const std::string who = mode == std::string("erase") ? "tia" : "tom";
+    agree(who, "metrics");
+    const auto begun = cohort("metrics");
+    const std::string tag(begun.header("ETag"));
+    EXPECT_TRUE(backend_.held_cohorts.find(tag));
+    const core::Json wish{{"mode", mode}, {"name", who}};
+    ASSERT_EQ(post("ann", "/accounts/" + who + "/erasure", wish).status, 202);
+    now_ += 1'000'000;
+    std::string piece;
+    const auto read = std::get<http::MadeBody>(begun.body).source->read(piece);
+    ASSERT_FALSE(read) << mode;
+    EXPECT_EQ(read.error().code, core::Errc::forbidden);
+    EXPECT_TRUE(piece.empty());
+    EXPECT_FALSE(backend_.held_cohorts.find(tag)) << mode;
+    const auto rest = cohort("metrics", {{"range", "bytes=9-"}, {"if-range", tag}});
+    EXPECT_EQ(rest.status, 200) << mode;
+  }
+  const std::string held(cohort("metrics").header("ETag"));
+  EXPECT_TRUE(backend_.held_cohorts.find(held));
+  backend_.held_cohorts.forget();
+  EXPECT_FALSE(backend_.held_cohorts.find(held));
+}
+
+TEST_F(Export, ADownloadEndsWithTheRightToExport) {
+  const auto begun = cohort("metrics");
+  ASSERT_EQ(post("ann", "/accounts/rex/state", {{"state", "disabled"}}).status, 200);
+  now_ += 1'000'000;
+  std::string piece;
+  const auto read = std::get<http::MadeBody>(begun.body).source->read(piece);
+  ASSERT_FALSE(read);
+  EXPECT_EQ(read.error().what, "who asked for this export may not export any more");
 }
 
 TEST_F(Export, ADownloadEndsWhenATrialsFileIsGone) {

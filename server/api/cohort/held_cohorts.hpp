@@ -18,6 +18,9 @@ class HeldCohorts {
   /// The archive, or null.
   std::shared_ptr<CohortArchive> find(std::string_view entity_tag);
   void keep(std::shared_ptr<CohortArchive> archive);
+  void drop(const CohortArchive& archive);
+  /// Drops all, because somebody's data may be in them no longer.
+  void forget();
 
  private:
   std::mutex mutex_;                                    ///< guards what follows
