@@ -78,9 +78,17 @@ class ApiTest : public ::testing::Test {
   }
   static std::string text(const http::Response& response) {
     if (const auto* held = std::get_if<std::string>(&response.body)) return *held;
+    if (const auto* made = std::get_if<http::MadeBody>(&response.body)) return text(*made);
     const auto& slice = std::get<http::FileSlice>(response.body);
     const auto bytes = core::read_file(slice.path).value();
     return std::string(core::text_of(bytes)).substr(slice.offset, slice.size);
+  }
+  /// What the server sends of it: all, or as much as comes before an error.
+  static std::string text(const http::MadeBody& body) {
+    std::string out, piece;
+    while (out.size() < body.size && body.source->read(piece)) out += piece;
+    EXPECT_LE(out.size(), body.size);
+    return out;
   }
   static core::Json json(const http::Response& response) {
     return core::Json::parse(text(response), nullptr, false);

@@ -6,6 +6,7 @@
 #include "core/json.hpp"
 #include "db/store/store.hpp"
 #include "db/store/volumes/objects.hpp"
+#include "server/api/cohort/held_cohorts.hpp"
 #include "server/api/learning/platform_keys.hpp"
 #include "server/api/operations/backups.hpp"
 #include "server/api/operations/telemetry.hpp"
@@ -56,6 +57,7 @@ struct Backend {
   RefusalLimit refusals{};
   Telemetry telemetry{};
   TrialViews trial_views{};
+  HeldCohorts held_cohorts{};
   PlatformKeys platform_keys{};
   Notifier* notifier = nullptr;  ///< null: nobody is told of events by e-mail or webhook
   PacsImports* pacs = nullptr;   ///< null: no PACS is stated

@@ -380,6 +380,12 @@ std::variant<http::Response, std::shared_ptr<http::WebSocketHandler>> converse(
   return std::move(*opened);
 }
 
+bool still_allowed(Backend& backend, const std::vector<RouteInfo>& table,
+                   const http::RequestHead& head) {
+  const auto matched = match(table, head);
+  return matched && allowed_caller(backend, *matched->route, head, nullptr, Presence::not_shown);
+}
+
 http::Lane lane_of(const std::vector<RouteInfo>& table, const http::RequestHead& head) {
   const auto matched = match(table, head);
   return matched ? matched->route->lane : http::Lane::quick;

@@ -37,6 +37,9 @@ http::Lane lane_of(const std::vector<RouteInfo>& table, const http::RequestHead&
 std::variant<http::Standing, http::Response> standing(Backend& backend,
                                                       const std::vector<RouteInfo>& table,
                                                       const http::RequestHead& head);
+/// Whether the request would still come in, for an answer that takes long.
+bool still_allowed(Backend& backend, const std::vector<RouteInfo>& table,
+                   const http::RequestHead& head);
 /// Answers a WebSocket request: the same checks as for every request, then the route's handler.
 std::variant<http::Response, std::shared_ptr<http::WebSocketHandler>> converse(
     Backend& backend, const std::vector<RouteInfo>& table, const http::RequestHead& head);

@@ -93,8 +93,11 @@ Result<std::size_t> apply_erasures(DataFolder& data, const std::vector<store::Er
   return applied;
 }
 
-Leaving::Leaving(DataFolder& data, std::vector<fs::path> lists)
-    : data_(data), lists_(std::move(lists)), thread_([this] { run(); }) {}
+Leaving::Leaving(DataFolder& data, std::vector<fs::path> lists, std::function<void()> forget)
+    : data_(data),
+      lists_(std::move(lists)),
+      forget_(std::move(forget)),
+      thread_([this] { run(); }) {}
 
 Leaving::~Leaving() {
   {
@@ -126,10 +129,19 @@ void Leaving::run() {
 }
 
 Result<void> Leaving::pass() {
+  forget_if_somebody_left();
   TRY(finish_erasures(data_, lists_));
   const auto begun = TRY(store::keep_retention(data_.store, core::utc_us()));
+  forget_if_somebody_left();
   if (!begun.empty()) TRY(finish_erasures(data_, lists_));
   return {};
+}
+
+void Leaving::forget_if_somebody_left() {
+  const auto all = data_.store.read([](store::Reading& tx) { return store::all_erasures(tx); });
+  if (all && erasures_ == all->size()) return;
+  if (all) erasures_ = all->size();
+  forget_();
 }
 
 }  // namespace app

@@ -3,7 +3,9 @@
 
 #include <condition_variable>
 #include <filesystem>
+#include <functional>
 #include <mutex>
+#include <optional>
 #include <thread>
 #include <vector>
 
@@ -31,7 +33,8 @@ core::Result<std::size_t> apply_erasures(DataFolder& data, const std::vector<sto
 /// ten minutes.
 class Leaving {
  public:
-  Leaving(DataFolder& data, std::vector<std::filesystem::path> lists);
+  /// @param forget  called after every erasure, by whichever process, and once at the start: drops what is held of people in memory
+  Leaving(DataFolder& data, std::vector<std::filesystem::path> lists, std::function<void()> forget);
   ~Leaving();
   Leaving(const Leaving&) = delete;
   Leaving& operator=(const Leaving&) = delete;
@@ -40,10 +43,13 @@ class Leaving {
  private:
   void run();
   core::Result<void> pass();
+  void forget_if_somebody_left();
 
   DataFolder& data_;
   const std::vector<std::filesystem::path> lists_;
-  std::mutex mutex_;  ///< guards what follows
+  const std::function<void()> forget_;
+  std::optional<std::size_t> erasures_;  ///< when it was called last
+  std::mutex mutex_;                     ///< guards what follows
   bool woken_ = true;
   bool ending_ = false;
   std::condition_variable changed_;

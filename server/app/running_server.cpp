@@ -327,8 +327,10 @@ core::Result<void> serve(const ServeOptions& given) {
   say_where(options, server.port());
   {
     const Anchoring anchoring(data, options.anchor_places);
-    Leaving people(data, {given.data / kErasureList,
-                          given.backups.value_or(given.data / "backups") / kErasureList});
+    Leaving people(
+        data,
+        {given.data / kErasureList, given.backups.value_or(given.data / "backups") / kErasureList},
+        [&backend] { backend.held_cohorts.forget(); });
     leaving = &people;
     log_line({{"what", "serving"}, {"tls", options.http.tls.has_value()}});
     server.run();

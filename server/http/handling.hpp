@@ -28,6 +28,17 @@ struct Handling {
     return broken(failure);
   }
 };
+/// The next piece of a body that is made while it is sent; false when it cannot be made.
+struct MakingPiece {
+  BodySource* source;
+  std::string* piece;
+  bool operator()() const try {
+    return bool(source->read(*piece));
+  } catch (const std::exception& failure) {
+    broken(failure);
+    return false;
+  }
+};
 struct Admitting {
   const Service* service;
   const RequestHead* head;

@@ -126,6 +126,26 @@ core::Result<std::optional<std::pair<std::uint64_t, std::uint64_t>>> byte_range(
   return Range(std::pair(*first, std::min(last.value_or(size - 1), size - 1)));
 }
 
+std::optional<std::pair<std::uint64_t, std::uint64_t>> wanted_part(const RequestHead& request,
+                                                                   std::uint64_t size,
+                                                                   std::string_view entity_tag,
+                                                                   Response& response) {
+  response.with("Accept-Ranges", "bytes");
+  const std::string_view condition = request.header("if-range");
+  if (!condition.empty() && condition != entity_tag) return std::pair(std::uint64_t{0}, size);
+  const auto range = byte_range(request.header("range"), size);
+  if (!range) {
+    response.status = 416;
+    response.with("Content-Range", fmt::format("bytes */{}", size));
+    return std::nullopt;
+  }
+  if (!*range) return std::pair(std::uint64_t{0}, size);
+  const auto [first, last] = **range;
+  response.status = 206;
+  response.with("Content-Range", fmt::format("bytes {}-{}/{}", first, last, size));
+  return std::pair(first, last - first + 1);
+}
+
 core::Result<Response> file_response(const std::filesystem::path& path, const RequestHead& request,
                                      std::string content_type) {
   std::error_code failure;
@@ -133,21 +153,9 @@ core::Result<Response> file_response(const std::filesystem::path& path, const Re
   if (failure || !std::filesystem::is_regular_file(path))
     return core::Error{core::Errc::not_found, "no such file"};
   Response response;
-  response.with("Content-Type", std::move(content_type)).with("Accept-Ranges", "bytes");
-  auto range = byte_range(request.header("range"), size);
-  if (!range) {
-    response.status = 416;
-    response.with("Content-Range", fmt::format("bytes */{}", size));
-    return response;
-  }
-  if (!*range) {
-    response.body = FileSlice{path, 0, size};
-    return response;
-  }
-  const auto [first, last] = **range;
-  response.status = 206;
-  response.with("Content-Range", fmt::format("bytes {}-{}/{}", first, last, size));
-  response.body = FileSlice{path, first, last - first + 1};
+  response.with("Content-Type", std::move(content_type));
+  if (const auto part = wanted_part(request, size, "", response))
+    response.body = FileSlice{path, part->first, part->second};
   return response;
 }
 

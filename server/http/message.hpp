@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -48,6 +49,10 @@ struct Request : RequestHead {
   /// File with a large body, which exists while the request is handled; empty: the body is in
   /// `body`.
   std::filesystem::path body_file = {};
+  /// True once nobody waits for the answer any more: the client closed its connection, or the server
+  /// stops. For a handler that works for long; may be called from any thread while the request is
+  /// handled. Empty: somebody waits.
+  std::function<bool()> called_off = {};
 };
 
 /// A part of a file, which is sent in pieces.
@@ -58,10 +63,25 @@ struct FileSlice {
   std::shared_ptr<const void> owner = {};  ///< kept alive until the file is sent
 };
 
+/// A body that is made while it is sent, so that its size is not bounded by memory or disk.
+class BodySource {
+ public:
+  virtual ~BodySource() = default;
+  /// Replaces `piece` by the next bytes, at least one, until the whole body was handed out. Called
+  /// on worker threads, one call after the other, and only when the client took the piece before.
+  /// An error closes the connection before the announced end, which is how the client is told.
+  virtual core::Result<void> read(std::string& piece) = 0;
+};
+
+struct MadeBody {
+  std::shared_ptr<BodySource> source;
+  std::uint64_t size = 0;
+};
+
 struct Response {
   int status = 200;
   std::vector<std::pair<std::string, std::string>> headers;
-  std::variant<std::string, FileSlice> body;
+  std::variant<std::string, FileSlice, MadeBody> body;
 
   Response& with(std::string name, std::string value) {
     headers.emplace_back(std::move(name), std::move(value));
@@ -79,6 +99,14 @@ Response error_response(int status, std::string_view code, std::string_view text
 /// if the range lies wholly beyond the end (416).
 core::Result<std::optional<std::pair<std::uint64_t, std::uint64_t>>> byte_range(
     std::string_view header, std::uint64_t size);
+
+/// The part of a representation of `size` bytes that the request wants: `response` becomes 200, 206
+/// or 416, with the headers of a range. With a header If-Range other than `entity_tag` the whole.
+/// Returns the first byte and the number of bytes; nothing for 416.
+std::optional<std::pair<std::uint64_t, std::uint64_t>> wanted_part(const RequestHead& request,
+                                                                   std::uint64_t size,
+                                                                   std::string_view entity_tag,
+                                                                   Response& response);
 
 /// A response with the file, or with the part that the request's Range header names: 200, 206 or
 /// 416. Errors: not_found, io.

@@ -1,12 +1,18 @@
 #include "server/http/pieces.hpp"
 
 #include <fcntl.h>
+#include <poll.h>
 #include <sys/sendfile.h>
 #include <unistd.h>
 
 #include <cerrno>
 
 namespace tractus::http {
+
+bool is_closed_by_peer(int socket) {
+  pollfd asked{.fd = socket, .events = POLLRDHUP, .revents = 0};
+  return ::poll(&asked, 1, 0) > 0;  // POLLHUP and POLLERR need not be asked for
+}
 
 File::File(const std::filesystem::path& path) : fd_(::open(path.c_str(), O_RDONLY | O_CLOEXEC)) {}
 

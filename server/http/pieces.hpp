@@ -11,6 +11,9 @@ namespace tractus::http {
 inline constexpr std::size_t kPiece_bytes = 256 * 1024;  ///< read at once
 inline constexpr std::size_t kSent_bytes = 4u << 20;  ///< sent at once, when the kernel takes them
 
+/// Has the other side of the socket closed it, or at least its sending half?
+bool is_closed_by_peer(int socket);
+
 /// Owns a file descriptor and closes it.
 class File {
  public:

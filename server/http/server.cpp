@@ -3,6 +3,7 @@
 //
 #include <fmt/format.h>
 
+#include <atomic>
 #include <boost/asio/co_spawn.hpp>
 #include <boost/asio/detached.hpp>
 #include <boost/asio/executor_work_guard.hpp>
@@ -109,6 +110,7 @@ struct Server::State {
                              bool keep_alive);
   net::awaitable<void> refuse(Connection& connection, const RequestHead& head, Response& refusal);
   net::awaitable<bool> write_file(Connection& connection, const FileSlice& slice);
+  net::awaitable<bool> write_made(Connection& connection, const MadeBody& body);
   net::awaitable<void> linger(Connection& connection);
   net::awaitable<bool> handshake(Connection& connection);
   net::awaitable<void> farewell(Connection& connection);
@@ -125,7 +127,7 @@ struct Server::State {
   net::thread_pool workers;
   Queue hashing, remote, computing;
   std::list<Connection> connections;  ///< touched by the input/output thread alone
-  bool draining = false;
+  std::atomic<bool> draining = false;
 };
 
 net::awaitable<void> Server::State::accept_all() {
@@ -240,6 +242,8 @@ net::awaitable<bool> Server::State::exchange(Connection& c) {
   Response response;
   {
     Request request{*head, std::move(parser.get().body()), spooled.path};
+    const int socket = c.stream.socket().native_handle();
+    request.called_off = [this, socket] { return draining || is_closed_by_peer(socket); };
     c.stream.expires_never();
     response = co_await handle(request);
   }
@@ -334,24 +338,27 @@ net::awaitable<bool> Server::State::write(Connection& c, const RequestHead& head
   add_security_headers(response);
   if (c.stream.is_tls() || options.behind_proxy) require_tls(response);
   const auto* slice = std::get_if<FileSlice>(&response.body);
+  const auto* made = std::get_if<MadeBody>(&response.body);
+  auto* text = std::get_if<std::string>(&response.body);
   bh::response<bh::string_body> message(bh::int_to_status(static_cast<unsigned>(response.status)),
                                         11);
   for (const auto& [name, value] : response.headers) message.insert(name, value);
   message.keep_alive(keep_alive);
   const bool bodiless = response.status == 204 || response.status == 304;
-  const std::uint64_t size = slice ? slice->size : std::get<std::string>(response.body).size();
+  const std::uint64_t size = slice ? slice->size : made ? made->size : text->size();
   if (!bodiless) message.content_length(size);
   const bool send_body = !bodiless && head.method != "HEAD";
-  if (send_body && !slice) message.body() = std::move(std::get<std::string>(response.body));
+  if (send_body && text) message.body() = std::move(*text);
   bh::response_serializer<bh::string_body> serializer(message);
   error_code failure;
   c.stream.expires_after(options.write_time);
-  if (send_body && !slice)
+  if (send_body && text)
     co_await bh::async_write(c.stream, serializer, into(failure));
   else
     co_await bh::async_write_header(c.stream, serializer, into(failure));
   if (failure) co_return false;
   if (send_body && slice) co_return co_await write_file(c, *slice);
+  if (send_body && made) co_return co_await write_made(c, *made);
   co_return true;
 }
 
@@ -381,6 +388,21 @@ net::awaitable<bool> Server::State::write_file(Connection& c, const FileSlice& s
     co_await net::async_write(c.stream, net::buffer(piece), into(failure));
     if (failure) co_return false;
     done += piece.size();
+  }
+  co_return true;
+}
+
+net::awaitable<bool> Server::State::write_made(Connection& c, const MadeBody& body) {
+  std::string piece;
+  for (std::uint64_t done = 0; done < body.size; done += piece.size()) {
+    c.stream.expires_never();
+    const bool read = co_await on_workers(workers, MakingPiece{body.source.get(), &piece});
+    // The length is already sent: closing is the only way to say so.
+    if (!read || piece.empty() || piece.size() > body.size - done) co_return false;
+    error_code failure;
+    c.stream.expires_after(options.write_time);
+    co_await net::async_write(c.stream, net::buffer(piece), into(failure));
+    if (failure) co_return false;
   }
   co_return true;
 }

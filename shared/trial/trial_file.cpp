@@ -9,6 +9,7 @@
 #include "trial/frame_writer.hpp"
 #include "trial/frames.hpp"
 #include "trial/packing.hpp"
+#include "trial/trial_reader.hpp"
 
 namespace tractus {
 namespace trial {
@@ -18,11 +19,13 @@ using OnSamples = std::function<void(const Block&)>;
 /// Takes the frames of one file in order and holds them against the rules of the format.
 class Scanner {
  public:
-  Scanner(FrameReader& reader, const OnSamples& on_samples, const ReadLimits& limits)
-      : reader_(reader), on_samples_(on_samples), limits_(limits) {}
+  Scanner(FrameReader& reader, const ReadLimits& limits) : reader_(reader), limits_(limits) {}
 
-  /// Reads to the end, to the torn rest or to the first thing wrong. Returns how it stopped.
-  core::Result<FrameReader::Step> run();
+  /// Reads until there is a block of samples (Step::frame), or to the end, to the torn rest or to
+  /// the first thing wrong. Returns how it stopped.
+  core::Result<FrameReader::Step> next();
+  /// The samples of the frame that was read last.
+  Block block() const { return {block_, probing_}; }
 
   Trial take_trial() { return std::move(trial_); }
   const Trial& trial() const { return trial_; }
@@ -48,7 +51,6 @@ class Scanner {
   core::Result<void> take_end();
 
   FrameReader& reader_;
-  const OnSamples& on_samples_;
   ReadLimits limits_;
   Trial trial_;
   std::vector<Sample> block_;
@@ -61,7 +63,7 @@ class Scanner {
   bool has_header_ = false;
 };
 
-core::Result<FrameReader::Step> Scanner::run() {
+core::Result<FrameReader::Step> Scanner::next() {
   for (;;) {
     auto step = reader_.next();
     if (!step) return step;
@@ -70,6 +72,7 @@ core::Result<FrameReader::Step> Scanner::run() {
       return step;
     }
     TRY(take_frame());
+    if (reader_.type() == FrameType::samples || reader_.type() == FrameType::packed) return step;
     if (!trial_.sealed) continue;
     if (const auto rest = reader_.size() - reader_.position(); rest > 0)
       return wrong(core::Errc::corrupt, fmt::format("{} bytes after the end frame", rest));
@@ -114,14 +117,8 @@ core::Result<void> Scanner::take_header() {
 }
 
 core::Result<void> Scanner::take_samples() {
-  if (trial_.header.rig == Rig::palpation) {
-    TRY(take_samples_of(block_, last_));
-    on_samples_({block_, {}});
-  } else {
-    TRY(take_samples_of(probing_, last_probing_));
-    on_samples_({{}, probing_});
-  }
-  return {};
+  if (trial_.header.rig == Rig::palpation) return take_samples_of(block_, last_);
+  return take_samples_of(probing_, last_probing_);
 }
 
 template <class S>
@@ -193,22 +190,45 @@ core::Result<void> Scanner::take_end() {
   return {};
 }
 
-core::Result<Trial> scan(const std::filesystem::path& path, const OnSamples& on_samples,
-                         const ReadLimits& limits) {
-  auto reader = TRY(FrameReader::open(path, limits.max_bytes));
-  Scanner scanner(reader, on_samples, limits);
-  auto step = TRY(scanner.run());
-  if (step == FrameReader::Step::damaged)
-    return frame_error(core::Errc::corrupt, path, reader.offset(),
-                       "the checksum of a frame's payload does not hold");
-  return scanner.take_trial();
+core::Error damaged_last_frame(const FrameReader& reader) {
+  return frame_error(core::Errc::corrupt, reader.path(), reader.offset(),
+                     "the checksum of a frame's payload does not hold");
 }
+
 }  // namespace
+
+struct TrialReader::State {
+  State(FrameReader reader, const ReadLimits& limits)
+      : frames(std::move(reader)), scanner(frames, limits) {}
+  FrameReader frames;
+  Scanner scanner;
+  bool ended = false;
+};
+
+TrialReader::TrialReader(std::unique_ptr<State> state) : state_(std::move(state)) {}
+TrialReader::~TrialReader() = default;
+TrialReader::TrialReader(TrialReader&&) noexcept = default;
+TrialReader& TrialReader::operator=(TrialReader&&) noexcept = default;
+
+core::Result<TrialReader> TrialReader::open(const std::filesystem::path& path,
+                                            const ReadLimits& limits) {
+  auto frames = TRY(FrameReader::open(path, limits.max_bytes));
+  return TrialReader(std::make_unique<State>(std::move(frames), limits));
+}
+
+core::Result<std::optional<Block>> TrialReader::next() {
+  if (state_->ended) return std::optional<Block>();
+  const auto step = TRY(state_->scanner.next());
+  if (step == FrameReader::Step::frame) return std::optional(state_->scanner.block());
+  if (step == FrameReader::Step::damaged) return damaged_last_frame(state_->frames);
+  state_->ended = true;
+  return std::optional<Block>();
+}
 
 core::Result<Trial> read_trial(const std::filesystem::path& path, const ReadLimits& limits) {
   std::vector<Sample> samples;
   std::vector<ProbingSample> probing;
-  auto trial = scan(
+  auto trial = scan_trial(
       path,
       [&](const Block& block) {
         samples.insert(samples.end(), block.palpation.begin(), block.palpation.end());
@@ -223,7 +243,14 @@ core::Result<Trial> read_trial(const std::filesystem::path& path, const ReadLimi
 
 core::Result<Trial> scan_trial(const std::filesystem::path& path, const OnSamples& on_samples,
                                const ReadLimits& limits) {
-  return scan(path, on_samples, limits);
+  auto reader = TRY(FrameReader::open(path, limits.max_bytes));
+  Scanner scanner(reader, limits);
+  for (;;) {
+    const auto step = TRY(scanner.next());
+    if (step == FrameReader::Step::damaged) return damaged_last_frame(reader);
+    if (step != FrameReader::Step::frame) return scanner.take_trial();
+    on_samples(scanner.block());
+  }
 }
 
 core::Result<std::uint64_t> recover_trial(const std::filesystem::path& path) {
@@ -231,9 +258,9 @@ core::Result<std::uint64_t> recover_trial(const std::filesystem::path& path) {
   auto locked = open_locked(path);
   if (!locked) return locked.error();
   auto reader = TRY(FrameReader::open(path, limits.max_bytes));
-  const OnSamples ignore = [](const Block&) {};
-  Scanner scanner(reader, ignore, limits);
-  auto step = TRY(scanner.run());
+  Scanner scanner(reader, limits);
+  auto step = FrameReader::Step::frame;
+  while (step == FrameReader::Step::frame) step = TRY(scanner.next());
   if (scanner.trial().sealed) return scanner.samples();
   if (step == FrameReader::Step::damaged && reader.type() == FrameType::end)
     return frame_error(core::Errc::corrupt, path, reader.offset(),

@@ -5,6 +5,7 @@
 #include "server/api/cohort/export.hpp"
 #include "server/api/route.hpp"
 #include "server/api/schema.hpp"
+#include "server/api/service.hpp"
 #include "server/api/trials/samples_array.hpp"
 
 namespace tractus {
@@ -75,8 +76,10 @@ Result<http::Response> export_cohort(const Call& call) {
   const auto tier = core::from_name<Tier>(call.text("tier"));
   if (!tier || *tier == Tier::none)
     return Error{Errc::bad_input, "tier: summary, metrics, reduced or full is expected"};
-  auto zip = TRY(cohort_zip(call.backend, call.caller.id, study_of_call(call), *tier));
-  return scratch_response(std::move(zip), "application/zip", "cohort.zip");
+  return cohort_response(call.backend, {.study = study_of_call(call), .tier = *tier}, call.request,
+                         [&backend = call.backend, head = http::RequestHead(call.request)] {
+                           return still_allowed(backend, routes(), head);
+                         });
 }
 
 /// Every export of this table is written into the audit trail.
@@ -148,11 +151,14 @@ std::vector<RouteInfo> export_routes() {
       "summary.csv", "exportSummary",
       "Export the number of trials per person, study and rig as a CSV table", export_summary);
   summary.parameters = {study};
-  RouteInfo cohort =
-      export_route("cohort.zip", "exportCohort",
-                   "Export a zip with tables, data dictionary and, for participants who "
-                   "consented to it, samples",
-                   export_cohort);
+  RouteInfo cohort = export_route(
+      "cohort.zip", "exportCohort",
+      "Export a zip with tables, data dictionary and, for participants who "
+      "consented to it, samples, of any size; it ends before its announced length if "
+      "a consent is withdrawn meanwhile; the header If-Range with its ETag, and Range, "
+      "resume it",
+      export_cohort);
+  cohort.lane = http::Lane::computing;
   cohort.parameters = {study,
                        {.in = Parameter::In::query,
                         .name = "tier",

@@ -1,5 +1,8 @@
 #include "server/api/cohort/export.hpp"
 
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+
 #include <algorithm>
 #include <checkout.hpp>
 #include <cstdio>
@@ -38,7 +41,7 @@ class Export : public PeopleTest {
   }
   /// A trial file of 1 kHz whose depth is 1e-6 m a tick, in place of tom's.
   void write_toms_trial(std::uint32_t samples) {
-    const auto path = folder_.path() / "trial";
+    const auto path = folder_.path() / fmt::format("trial-{}", samples);
     trial::Header header;
     header.id = trial_of("tom");
     header.case_id = testing::kCase;
@@ -64,10 +67,22 @@ class Export : public PeopleTest {
     const std::string sha256 = objects_.put(bytes).value();
     ASSERT_TRUE(store_.write([&](store::Writing& tx) -> core::Result<void> {
       TRY(store::add_object(tx, sha256, bytes.size(), 1));
-      TRY(tx.query("update trials set sha256 = ?, operator_name = ? where id = ?",
-                   {sha256, std::string("Mustermann^Erika"), trial_of("tom")}));
+      TRY(tx.query("update cases set kind = 'probing'"));
+      TRY(tx.query(
+          "update trials set sha256 = ?, operator_name = ?, samples = ? where id = ?",
+          {sha256, std::string("Mustermann^Erika"), std::int64_t{samples}, trial_of("tom")}));
       return store::set_assessment(tx, trial_of("tom"), {{"force_mean", 2.5, ""}}, true, "{}");
     }));
+  }
+  http::Response cohort(const std::string& tier, std::map<std::string, std::string> headers = {}) {
+    headers.merge(by_token("rex"));
+    return ask(request("GET", "/api/v1/export/cohort.zip?tier=" + tier, headers));
+  }
+  std::string zipped(const std::string& tier) { return text(cohort(tier)); }
+  /// Others take the places of those that are held.
+  void forget_archives() {
+    for (const char* of : {"summary", "metrics", "reduced", "metrics&study=a-tom"})
+      EXPECT_EQ(cohort(of).status, 200);
   }
   std::string csv(const std::string& name) {
     const auto response = get("rex", "/export/" + name);
@@ -194,6 +209,137 @@ TEST_F(Export, TheWholeCohortIsOneZipOfTheSameTables) {
   EXPECT_EQ(text(get("rex", "/export/cohort.zip?tier=metrics")).find("samples/"),
             std::string::npos);
   EXPECT_EQ(get("rex", "/export/cohort.zip?tier=none").status, 400);
+}
+
+TEST_F(Export, TheZipHasTheArraysThatAreExportedOneByOne) {
+  write_toms_trial(1000);
+  const std::string one = "/export/trials/" + toms_name() + "/samples.npy?rate_Hz=";
+  // The entries are stored: their bytes are in the zip as they are.
+  for (const auto& [tier, rate] : {std::pair("full", "0"), std::pair("reduced", "100")})
+    EXPECT_NE(zipped(tier).find(text(get("rex", one + rate))), std::string::npos) << tier;
+}
+
+TEST_F(Export, TheSameCohortIsTheSameBytes) {
+  write_toms_trial(1000);
+  const auto first = cohort("full"), again = cohort("full");
+  EXPECT_EQ(first.header("ETag"), again.header("ETag"));
+  EXPECT_EQ(text(first), text(again));
+  EXPECT_NE(first.header("ETag"), cohort("reduced").header("ETag"));
+  write_toms_trial(999);
+  EXPECT_NE(first.header("ETag"), cohort("full").header("ETag"));
+}
+
+TEST_F(Export, ADownloadGoesOnWhereItBroke) {
+  write_toms_trial(1000);
+  const auto whole = cohort("full");
+  const std::string bytes = text(whole), tag(whole.header("ETag"));
+  for (const std::size_t first : {std::size_t{1}, bytes.size() / 2, bytes.size() - 30}) {
+    const auto rest =
+        cohort("full", {{"range", fmt::format("bytes={}-", first)}, {"if-range", tag}});
+    EXPECT_EQ(rest.status, 206);
+    EXPECT_EQ(rest.header("Content-Range"),
+              fmt::format("bytes {}-{}/{}", first, bytes.size() - 1, bytes.size()));
+    EXPECT_EQ(text(rest), bytes.substr(first));
+  }
+  const std::string beyond = fmt::format("bytes={}-", bytes.size());
+  EXPECT_EQ(cohort("full", {{"range", beyond}, {"if-range", tag}}).status, 416);
+  forget_archives();  // as after a restart: the checksums of what was sent are made anew
+  const auto last = cohort("full", {{"range", "bytes=-500"}, {"if-range", tag}});
+  EXPECT_EQ(last.status, 206);
+  EXPECT_EQ(text(last), bytes.substr(bytes.size() - 500));
+}
+
+/// A part of another cohort behind what a client has would be a file of two cohorts.
+TEST_F(Export, ARangeThatNamesNoCohortGetsTheWhole) {
+  write_toms_trial(1000);
+  const std::string bytes = zipped("full");
+  const auto whole = cohort("full", {{"range", "bytes=1000-"}});
+  EXPECT_EQ(whole.status, 200);
+  EXPECT_EQ(text(whole), bytes);
+}
+
+TEST_F(Export, ADownloadGoesOnAlthoughATrialCameIn) {
+  write_toms_trial(1000);
+  const auto whole = cohort("full");
+  const std::string bytes = text(whole), tag(whole.header("ETag"));
+  agree("tia", "metrics");  // her trial is released now
+  const auto rest = cohort("full", {{"range", "bytes=1000-"}, {"if-range", tag}});
+  EXPECT_EQ(rest.status, 206);
+  EXPECT_EQ(text(rest), bytes.substr(1000));
+  const auto other = cohort("reduced", {{"range", "bytes=1000-"}, {"if-range", tag}});
+  EXPECT_EQ(other.status, 200) << "the tag is of another export";
+  EXPECT_NE(cohort("full").header("ETag"), tag);
+}
+
+TEST_F(Export, AWithdrawnConsentEndsADownload) {
+  write_toms_trial(100'000);
+  for (const char* tier : {"reduced", "none"}) {
+    agree("tom", "full");
+    const auto begun = cohort("full");
+    const std::string tag(begun.header("ETag"));
+    const auto& body = std::get<http::MadeBody>(begun.body);
+    std::string piece;
+    ASSERT_TRUE(body.source->read(piece));
+    ASSERT_LT(piece.size(), body.size) << "there is more to come";
+    agree("tom", tier);
+    now_ += 1'000'000;
+    const auto read = body.source->read(piece);
+    ASSERT_FALSE(read) << tier;
+    EXPECT_EQ(read.error().code, core::Errc::forbidden);
+    EXPECT_THAT(read.error().what, ::testing::HasSubstr("1 of the 1 trials"));
+    const auto rest = cohort("full", {{"range", "bytes=1000-"}, {"if-range", tag}});
+    EXPECT_EQ(rest.status, 200) << "begins anew";
+    EXPECT_LT(text(rest).size(), body.size) << "without the samples that were withdrawn";
+  }
+}
+
+TEST_F(Export, WhoLeftIsInNothingThatIsSentOrHeld) {
+  for (const char* mode : {"anonymise", "erase"}) {
+    const std::string who = mode == std::string("erase") ? "tia" : "tom";
+    agree(who, "metrics");
+    const auto begun = cohort("metrics");
+    const std::string tag(begun.header("ETag"));
+    EXPECT_TRUE(backend_.held_cohorts.find(tag));
+    const core::Json wish{{"mode", mode}, {"name", who}};
+    ASSERT_EQ(post("ann", "/accounts/" + who + "/erasure", wish).status, 202);
+    now_ += 1'000'000;
+    std::string piece;
+    const auto read = std::get<http::MadeBody>(begun.body).source->read(piece);
+    ASSERT_FALSE(read) << mode;
+    EXPECT_EQ(read.error().code, core::Errc::forbidden);
+    EXPECT_TRUE(piece.empty());
+    EXPECT_FALSE(backend_.held_cohorts.find(tag)) << mode;
+    const auto rest = cohort("metrics", {{"range", "bytes=9-"}, {"if-range", tag}});
+    EXPECT_EQ(rest.status, 200) << mode;
+  }
+  const std::string held(cohort("metrics").header("ETag"));
+  EXPECT_TRUE(backend_.held_cohorts.find(held));
+  backend_.held_cohorts.forget();
+  EXPECT_FALSE(backend_.held_cohorts.find(held));
+}
+
+TEST_F(Export, ADownloadEndsWithTheRightToExport) {
+  const auto begun = cohort("metrics");
+  ASSERT_EQ(post("ann", "/accounts/rex/state", {{"state", "disabled"}}).status, 200);
+  now_ += 1'000'000;
+  std::string piece;
+  const auto read = std::get<http::MadeBody>(begun.body).source->read(piece);
+  ASSERT_FALSE(read);
+  EXPECT_EQ(read.error().what, "who asked for this export may not export any more");
+}
+
+TEST_F(Export, ADownloadEndsWhenATrialsFileIsGone) {
+  write_toms_trial(1000);
+  const auto begun = cohort("full");
+  std::filesystem::remove_all(folder_.path() / "objects");
+  EXPECT_LT(text(begun).size(), std::get<http::MadeBody>(begun.body).size);
+}
+
+TEST_F(Export, NobodyCountsRowsForAClientThatWent) {
+  write_toms_trial(1000);
+  auto asked = request("GET", "/api/v1/export/cohort.zip?tier=reduced", by_token("rex"));
+  asked.called_off = [] { return true; };
+  EXPECT_EQ(ask(asked).status, 503);
 }
 
 /// deploy/examples, as a researcher would run them: nothing but Python, nothing but R.

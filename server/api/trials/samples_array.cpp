@@ -12,7 +12,6 @@
 #include "core/file.hpp"
 #include "core/try.hpp"
 #include "server/api/trials/uploads.hpp"
-#include "trial/trial_file.hpp"
 
 namespace tractus {
 namespace api {
@@ -44,45 +43,23 @@ ProbingRow row_of(const trial::ProbingSample& s) {
           double(s.mode), double(s.flags)};
 }
 
-/// The .npy format 1.0: magic, version, length of the header, a Python literal, padded.
-std::string head_of(std::uint64_t rows, std::size_t columns) {
-  std::string out("\x93NUMPY\x01\x00", 8);
-  constexpr std::size_t kLiteral = kHead_bytes - 10;
-  out += static_cast<char>(kLiteral & 255u);
-  out += static_cast<char>(kLiteral >> 8);
-  out +=
-      fmt::format("{{'descr': '<f8', 'fortran_order': False, 'shape': ({}, {}), }}", rows, columns);
-  out.resize(kHead_bytes - 1, ' ');
-  return out + '\n';
+std::size_t row_bytes(trial::Rig rig) {
+  return rig == trial::Rig::palpation ? sizeof(PalpationRow) : sizeof(ProbingRow);
 }
 
-/// Rows first, then the head, which says how many there are.
-class ArrayFile {
- public:
-  explicit ArrayFile(const std::filesystem::path& path) : out_(path, std::ios::binary) {
-    out_ << std::string(kHead_bytes, ' ');
+/// Appends the samples that are the rows of the rate.
+template <class Sample>
+void append_rows(std::span<const Sample> samples, double rate_Hz, double& next_s,
+                 std::string& out) {
+  static_assert(std::endian::native == std::endian::little);
+  for (const Sample& sample : samples) {
+    if (rate_Hz > 0.0 && sample.t_s < next_s) continue;
+    // The next row is the first sample of the next interval: no drift over a long trial.
+    if (rate_Hz > 0.0) next_s = (std::floor(sample.t_s * rate_Hz + 1e-9) + 1.0) / rate_Hz;
+    const auto row = row_of(sample);
+    out.append(reinterpret_cast<const char*>(row.data()), sizeof row);
   }
-  void add(std::span<const double> row) {
-    static_assert(std::endian::native == std::endian::little);
-    columns_ = row.size();
-    if (is_full()) return;
-    ++rows_;
-    out_.write(reinterpret_cast<const char*>(row.data()),
-               static_cast<std::streamsize>(row.size() * sizeof(double)));
-  }
-  bool is_full() const { return rows_ * columns_ * sizeof(double) >= kMaxArray_bytes; }
-  bool finish() {
-    out_.seekp(0);
-    out_ << head_of(rows_, columns_);
-    out_.close();
-    return !out_.fail();
-  }
-
- private:
-  std::ofstream out_;
-  std::uint64_t rows_ = 0;
-  std::size_t columns_ = std::tuple_size_v<PalpationRow>;
-};
+}
 
 }  // namespace
 
@@ -91,21 +68,60 @@ std::uint64_t samples_npy_bytes(std::uint64_t samples) {
          std::min(samples * std::tuple_size_v<PalpationRow> * sizeof(double), kMaxArray_bytes);
 }
 
+std::uint64_t npy_rows(trial::Rig rig, std::uint64_t size_bytes) {
+  return size_bytes / row_bytes(rig);
+}
+
+std::uint64_t npy_bytes(trial::Rig rig, std::uint64_t rows) {
+  return kHead_bytes + rows * row_bytes(rig);
+}
+
+std::string npy_head(trial::Rig rig, std::uint64_t rows) {
+  std::string out("\x93NUMPY\x01\x00", 8);
+  constexpr std::size_t kLiteral = kHead_bytes - 10;
+  out += static_cast<char>(kLiteral & 255u);
+  out += static_cast<char>(kLiteral >> 8);
+  const trial::Rig of = rows == 0 ? trial::Rig::palpation : rig;
+  out += fmt::format("{{'descr': '<f8', 'fortran_order': False, 'shape': ({}, {}), }}", rows,
+                     row_bytes(of) / sizeof(double));
+  out.resize(kHead_bytes - 1, ' ');
+  return out + '\n';
+}
+
+Result<SampleRows> SampleRows::open(const std::filesystem::path& trial_file, double rate_Hz) {
+  auto reader = TRY(trial::TrialReader::open(
+      trial_file, {.max_samples = kMaxTrialSamples, .max_bytes = kMaxTrial_bytes}));
+  return SampleRows(std::move(reader), rate_Hz);
+}
+
+Result<bool> SampleRows::append_to(std::string& out) {
+  const auto block = TRY(reader_.next());
+  if (!block) return false;
+  if (!block->probing.empty()) rig_ = trial::Rig::probing;
+  append_rows(block->palpation, rate_Hz_, next_s_, out);
+  append_rows(block->probing, rate_Hz_, next_s_, out);
+  return true;
+}
+
+/// Rows first, then the head, which says how many there are.
 Result<void> write_samples_npy(const std::filesystem::path& trial_file, double rate_Hz,
                                const std::filesystem::path& to) {
-  ArrayFile array(to);
-  double next_s = 0.0;
-  const auto take = [&](const auto& sample) {
-    if (rate_Hz > 0.0 && sample.t_s < next_s) return;
-    // The next row is the first sample of the next interval: no drift over a long trial.
-    if (rate_Hz > 0.0) next_s = (std::floor(sample.t_s * rate_Hz + 1e-9) + 1.0) / rate_Hz;
-    array.add(row_of(sample));
-  };
-  TRY(trial::scan_trial(trial_file, [&](const trial::Block& block) { block.each(take); },
-                        {.max_samples = kMaxTrialSamples, .max_bytes = kMaxTrial_bytes}));
-  if (array.is_full())
-    return Error{Errc::too_large, "the array is larger than 512 MiB: use a lower rate_Hz"};
-  if (array.finish()) return {};
+  auto rows = TRY(SampleRows::open(trial_file, rate_Hz));
+  std::ofstream out(to, std::ios::binary);
+  out << std::string(kHead_bytes, ' ');
+  std::uint64_t size = 0;
+  std::string piece;
+  for (bool more = true; more; piece.clear()) {
+    more = TRY(rows.append_to(piece));
+    size += piece.size();
+    if (size >= kMaxArray_bytes)
+      return Error{Errc::too_large, "the array is larger than 512 MiB: use a lower rate_Hz"};
+    out << piece;
+  }
+  out.seekp(0);
+  out << npy_head(rows.rig(), npy_rows(rows.rig(), size));
+  out.close();
+  if (out) return {};
   return core::system_error(to, "cannot write");
 }
 
