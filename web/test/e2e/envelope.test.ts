@@ -85,14 +85,21 @@ describe.runIf(inject('fixture'))('the envelope', () => {
     await page.getByRole('radio', { name: 'No bone here', exact: true }).check();
     await page.getByRole('slider', { name: 'Brush radius' }).fill('2');
     const { x, y } = await sideOfOutline();
-    const wish = await changedBy(async () => {
-      await page.mouse.move(x, y);
-      await page.mouse.down();
-      await page.mouse.move(x + 10, y + 30);
-      await page.mouse.move(x + 20, y + 60);
-      await page.mouse.up();
-    });
-    const marks = wish.envelope_marks ?? [];
+    // The page asks while the mouse still moves, too, where the stroke is slow: the last question has the whole of it.
+    const questions: Request[] = [];
+    const note = (request: Request) => isPlan(request) && questions.push(request);
+    page.on('request', note);
+    await page.mouse.move(x, y);
+    await page.mouse.down();
+    await page.mouse.move(x + 10, y + 30);
+    await page.mouse.move(x + 20, y + 60);
+    await page.mouse.up();
+    await expect.poll(shape, { timeout: 20_000 }).not.toBe(first);
+    const painted = Number.parseInt(await page.getByText(/^\d+ marks on the envelope$/).innerText());
+    const lastMarks = () => questions.map(wishOf).at(-1)?.envelope_marks ?? [];
+    await expect.poll(() => lastMarks().length).toBe(painted);
+    page.off('request', note);
+    const marks = lastMarks();
     expect(marks.length).toBeGreaterThan(3);
     // One mark for each half radius of the way, 1 mm.
     const [a, b] = marks.slice(1).map(({ at_m }) => at_m);
