@@ -2,11 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <fstream>
 #include <set>
+
+#include "math/rigid_fit.hpp"
 
 namespace tractus {
 namespace capture {
@@ -17,36 +17,20 @@ using math::Vec3;
 
 constexpr double kOnALine_m = 1e-3;  // second extent of a shape that tells a turn
 
-struct Pair {
-  Vec3 in_body, seen;
+/// What a frame shows of a body's markers, one to one.
+struct Seen {
+  std::vector<Vec3> p_B_m, p_C_m;
 };
 
-/// The pose that carries the body's points to the seen ones, and how far off it is, m.
-std::pair<math::Pose, double> best_fit(const std::vector<Pair>& pairs) {
-  Vec3 centre_b = Vec3::Zero(), centre_c = Vec3::Zero();
-  for (const Pair& p : pairs) centre_b += p.in_body, centre_c += p.seen;
-  centre_b /= double(pairs.size()), centre_c /= double(pairs.size());
-  math::Mat3 covariance = math::Mat3::Zero();
-  for (const Pair& p : pairs)
-    covariance += (p.seen - centre_c) * (p.in_body - centre_b).transpose();
-  const Eigen::JacobiSVD<math::Mat3> svd(covariance, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  math::Mat3 keep = math::Mat3::Identity();
-  keep(2, 2) = (svd.matrixU() * svd.matrixV().transpose()).determinant() < 0.0 ? -1.0 : 1.0;
-  const math::Mat3 turn = svd.matrixU() * keep * svd.matrixV().transpose();
-  const math::Pose pose{centre_c - turn * centre_b, math::Quat(turn)};
-  double sum = 0.0;
-  for (const Pair& p : pairs) sum += (pose * p.in_body - p.seen).squaredNorm();
-  return {pose, std::sqrt(sum / double(pairs.size()))};
+bool spans_a_plane(std::span<const Vec3> points_m) {
+  return math::extents(points_m)[1] > kOnALine_m;
 }
 
-/// Do the points span more than a line?
-bool spans_a_plane(const std::vector<Vec3>& points) {
-  Vec3 centre = Vec3::Zero();
-  for (const Vec3& p : points) centre += p / double(points.size());
-  math::Mat3 spread = math::Mat3::Zero();
-  for (const Vec3& p : points) spread += (p - centre) * (p - centre).transpose();
-  const Eigen::SelfAdjointEigenSolver<math::Mat3> axes(spread);
-  return std::sqrt(axes.eigenvalues()[1]) > kOnALine_m;
+double rms_m(const math::Pose& X_CB, const Seen& seen) {
+  double sum_m2 = 0.0;
+  for (std::size_t i = 0; i < seen.p_B_m.size(); ++i)
+    sum_m2 += (X_CB * seen.p_B_m[i] - seen.p_C_m[i]).squaredNorm();
+  return std::sqrt(sum_m2 / double(seen.p_B_m.size()));
 }
 }  // namespace
 
@@ -69,27 +53,27 @@ core::Result<Motion> read_motion(const std::filesystem::path& path) {
 
 core::Result<BodyTrack> fit_body(const Motion& motion, const BodyShape& shape, double worst_m) {
   std::vector<Vec3> points;
-  std::map<double, std::vector<Pair>> frames;
+  std::map<double, Seen> frames;
   for (const auto& [name, at] : shape) {
     const auto track = motion.markers.find(name);
     if (track == motion.markers.end())
       return Error{Errc::bad_input, fmt::format("marker '{}' is not in the motion", name)};
     points.push_back(at);
-    for (std::size_t k = 0; k < track->second.t_s.size(); ++k)
-      frames[track->second.t_s[k]].push_back({at, track->second.p_C_m[k]});
+    for (std::size_t k = 0; k < track->second.t_s.size(); ++k) {
+      Seen& frame = frames[track->second.t_s[k]];
+      frame.p_B_m.push_back(at);
+      frame.p_C_m.push_back(track->second.p_C_m[k]);
+    }
   }
   if (points.size() < 3 || !spans_a_plane(points))
     return Error{Errc::bad_input, "a body needs three markers that are not on a line"};
   BodyTrack out;
-  for (const auto& [t_s, pairs] : frames) {
-    if (pairs.size() < 3) continue;
-    std::vector<Vec3> seen;
-    for (const Pair& p : pairs) seen.push_back(p.in_body);
-    if (!spans_a_plane(seen)) continue;
-    const auto [pose, off_m] = best_fit(pairs);
-    if (off_m > worst_m) continue;
+  for (const auto& [t_s, seen] : frames) {
+    if (seen.p_B_m.size() < 3 || !spans_a_plane(seen.p_B_m)) continue;
+    const math::Pose X_CB = math::rigid_fit(seen.p_C_m, seen.p_B_m);
+    if (rms_m(X_CB, seen) > worst_m) continue;
     out.t_s.push_back(t_s);
-    out.X_CB.push_back(pose);
+    out.X_CB.push_back(X_CB);
   }
   if (out.t_s.empty())
     return Error{Errc::bad_input,

@@ -9,6 +9,7 @@
 #include "core/json.hpp"
 #include "core/try.hpp"
 #include "core/words.hpp"
+#include "math/rigid_fit.hpp"
 
 namespace tractus {
 namespace headset {
@@ -20,28 +21,26 @@ constexpr double kRoom_m = 50.0;
 
 core::Error bad(const std::string& what) { return {core::Errc::bad_input, what}; }
 
-using Points = Eigen::Matrix3Xd;  // one column each, m
+using Points = std::vector<math::Vec3>;  // m
 
 /// Root mean square distance from the straight line that fits best.
 double off_a_line_m(const Points& points) {
-  const Points centred = points.colwise() - points.rowwise().mean();
-  const Eigen::Vector3d spread = Eigen::JacobiSVD<Points>(centred).singularValues().head<3>();
-  return std::hypot(spread[1], spread[2]) / std::sqrt(double(points.cols()));
+  const math::Vec3 extents_m = math::extents(points);
+  return std::hypot(extents_m[1], extents_m[2]) / std::sqrt(double(points.size()));
 }
 
 /// Are there two orders of the points whose distances agree?
 bool could_be_confused(const Points& points) {
-  std::vector<Eigen::Index> order(std::size_t(points.cols()));
+  std::vector<std::size_t> order(points.size());
   std::iota(order.begin(), order.end(), 0);
-  const auto distance = [&](Eigen::Index a, Eigen::Index b) {
-    return (points.col(a) - points.col(b)).norm();
+  const auto distance = [&](std::size_t a, std::size_t b) {
+    return (points[a] - points[b]).norm();
   };
   while (std::next_permutation(order.begin(), order.end())) {
     double worst_m = 0.0;
     for (std::size_t a = 0; a < order.size(); ++a)
       for (std::size_t b = a + 1; b < order.size(); ++b)
-        worst_m = std::max(worst_m, std::abs(distance(Eigen::Index(a), Eigen::Index(b)) -
-                                             distance(order[a], order[b])));
+        worst_m = std::max(worst_m, std::abs(distance(a, b) - distance(order[a], order[b])));
     if (worst_m < kAlike_m) return true;
   }
   return false;
@@ -59,8 +58,8 @@ math::Vec3 point_of(core::Fields& fields, const char* key) {
 core::Json array_of(const math::Vec3& v) { return core::Json::array({v.x(), v.y(), v.z()}); }
 
 Points room_of(std::span<const FixturePoint> points) {
-  Points out(3, Eigen::Index(points.size()));
-  for (std::size_t i = 0; i < points.size(); ++i) out.col(Eigen::Index(i)) = points[i].p_S_m;
+  Points out;
+  for (const FixturePoint& point : points) out.push_back(point.p_S_m);
   return out;
 }
 
@@ -101,17 +100,15 @@ core::Result<std::vector<FixturePoint>> read_fixture(const std::filesystem::path
 core::Result<Alignment> align(std::span<const Touched> touched, double limit_m) {
   if (touched.size() < kFewest)
     return bad(fmt::format("alignment: {} points were touched, three are needed", touched.size()));
-  Points room(3, Eigen::Index(touched.size())), device(3, Eigen::Index(touched.size()));
-  for (std::size_t i = 0; i < touched.size(); ++i) {
-    room.col(Eigen::Index(i)) = touched[i].point.p_S_m;
-    device.col(Eigen::Index(i)) = touched[i].p_D_m;
+  Points room, device;
+  for (const Touched& one : touched) {
+    room.push_back(one.point.p_S_m);
+    device.push_back(one.p_D_m);
   }
   if (std::min(off_a_line_m(room), off_a_line_m(device)) < kThin_m)
     return bad("alignment: the points lie on a line; a turn about it would go unseen");
-  // Of dynamic size: with three fixed rows gcc 12 is wrong about Eigen's bounds.
-  const Eigen::Matrix4d T = Eigen::umeyama(Eigen::MatrixXd(device), Eigen::MatrixXd(room), false);
   Alignment out;
-  out.X_SD = {T.block<3, 1>(0, 3), math::Quat(math::Mat3(T.block<3, 3>(0, 0))).normalized()};
+  out.X_SD = math::rigid_fit(room, device);
   double squares = 0.0;
   for (const Touched& one : touched) {
     const double off_m = (one.point.p_S_m - out.X_SD * one.p_D_m).norm();

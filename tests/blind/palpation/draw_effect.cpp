@@ -3,12 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
+
+#include "support/angle.hpp"
 
 namespace blind {
 namespace {
 
-constexpr double kTwoPi = 2.0 * std::numbers::pi;
 using Values = std::map<std::string, std::vector<double>>;
 
 std::vector<double> scaled(const Vec3& way, double size) {

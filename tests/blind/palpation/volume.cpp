@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
-#include <numbers>
+
+#include "support/angle.hpp"
 
 namespace blind {
 namespace {
 
-constexpr double kTwoPi = 2.0 * std::numbers::pi;
 constexpr double kVoxel_m = 5e-4;
 constexpr int kSide = 96;
 

@@ -1,12 +1,10 @@
 /// Parameters of the effects: ranges of the literature for the shapes, a first guess for the sizes.
-#include <numbers>
-
 #include "probing/draw.hpp"
+#include "support/angle.hpp"
 
 namespace blind {
 namespace {
 
-constexpr double kTwoPi = 2.0 * std::numbers::pi;
 using Draw = Parameters (*)(Random&, const Base&);
 
 struct Entry {

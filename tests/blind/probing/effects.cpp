@@ -1,14 +1,12 @@
 /// The catalogue's effects on the force, one small class each, from the table of laws.
 #include <cmath>
-#include <numbers>
 
 #include "probing/law.hpp"
 #include "probing/outside.hpp"
+#include "support/angle.hpp"
 
 namespace blind {
 namespace {
-
-constexpr double kTwoPi = 2.0 * std::numbers::pi;
 
 class Inertia final : public Term {
  public:

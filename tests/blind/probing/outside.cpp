@@ -2,12 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
+
+#include "support/angle.hpp"
 
 namespace blind {
 namespace {
-
-constexpr double kTwoPi = 2.0 * std::numbers::pi;
 
 /// Damping stronger on the way in than out: D (1 + κ sgn v).
 class DirectionDamping final : public Term {

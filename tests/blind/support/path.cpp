@@ -4,10 +4,10 @@
 #include <cmath>
 #include <numbers>
 
+#include "support/angle.hpp"
+
 namespace blind {
 namespace {
-
-constexpr double kTwoPi = 2.0 * std::numbers::pi;
 
 double minimum_jerk(double u) { return u * u * u * (10.0 + u * (-15.0 + 6.0 * u)); }
 
