@@ -1,9 +1,6 @@
 #include "statistics/anova/rm_anova.hpp"
 
-#include <Eigen/LU>
-#include <Eigen/QR>
 #include <cmath>
-#include <limits>
 
 #include "core/try.hpp"
 #include "statistics/distributions/distributions.hpp"
@@ -13,34 +10,6 @@ namespace statistics {
 namespace {
 
 using ExtendedArray = Eigen::Array<long double, Eigen::Dynamic, Eigen::Dynamic>;
-
-/// An orthonormal basis of the contrasts of k levels, [level][contrast].
-Matrix contrasts(Eigen::Index k) {
-  Matrix with_ones = Matrix::Identity(k, k);
-  with_ones.col(0).setOnes();
-  const Matrix q = Eigen::HouseholderQR<Matrix>(with_ones).householderQ();
-  return q.rightCols(k - 1);
-}
-
-/// Second-order expansion of the null distribution of −ν ρ ln W (Box 1949), p contrasts.
-Mauchly mauchly(const Matrix& covariance, double subjects) {
-  Mauchly out;
-  const Eigen::Index k = covariance.rows();
-  const double p = static_cast<double>(k - 1), nu = subjects - 1.0;
-  out.df = p * (p + 1.0) / 2.0 - 1.0;
-  out.w = out.chi_squared = out.p = std::numeric_limits<double>::quiet_NaN();
-  if (k < 3 || nu < p) return out;
-  const Matrix m = contrasts(k), inner = m.transpose() * covariance * m;
-  out.w = inner.determinant() / std::pow(inner.trace() / p, p);
-  const double rho = 1.0 - (2.0 * p * p + p + 2.0) / (6.0 * p * nu);
-  out.chi_squared = -nu * rho * std::log(out.w);
-  const double w2 = (p + 2.0) * (p - 1.0) * (p - 2.0) *
-                    (2.0 * p * p * p + 6.0 * p * p + 3.0 * p + 2.0) /
-                    (288.0 * std::pow(nu * p * rho, 2.0));
-  const double first = chi_squared_upper(out.chi_squared, out.df);
-  out.p = first + w2 * (chi_squared_upper(out.chi_squared, out.df + 4.0) - first);
-  return out;
-}
 
 core::Result<void> check(const Matrix& values) {
   if (values.rows() < 2 || values.cols() < 2)
@@ -67,7 +36,8 @@ void add_corrections(const Matrix& values, RmAnova& out) {
   const bool above = !(out.epsilon_hf >= out.epsilon_lower && out.epsilon_hf <= 1.0);
   out.p_hf = corrected(above ? 1.0 : out.epsilon_hf);
   out.p_lower = corrected(out.epsilon_lower);
-  out.mauchly = mauchly(covariance, n);
+  const Matrix m = contrasts(values.cols());
+  out.mauchly = mauchly(m.transpose() * covariance * m, n - 1.0);
 }
 
 }  // namespace

@@ -8,14 +8,9 @@
 /// Report the Greenhouse–Geisser p; Mauchly's test has little power in the few subjects there are.
 #pragma once
 
-#include "statistics/regression/design.hpp"
+#include "statistics/anova/sphericity.hpp"
 
 namespace tractus::statistics {
-
-struct Mauchly {
-  double w = 0.0, chi_squared = 0.0, df = 0.0;
-  double p = 0.0;  ///< NaN for two levels (sphericity holds) or no more subjects than contrasts
-};
 
 struct RmAnova {
   Vector level_means;

@@ -2,12 +2,9 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/LU>
-#include <Eigen/QR>
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <limits>
 
 #include "core/try.hpp"
 #include "statistics/distributions/distributions.hpp"
@@ -17,11 +14,9 @@ namespace statistics {
 namespace {
 
 /// Orthonormal contrasts of k levels, or the weights of their mean scaled to length one.
-Matrix weights(Eigen::Index k, bool contrasts) {
-  Matrix with_ones = Matrix::Identity(k, k);
-  with_ones.col(0).setOnes();
-  const Matrix q = Eigen::HouseholderQR<Matrix>(with_ones).householderQ();
-  return contrasts ? Matrix(q.rightCols(k - 1)) : Matrix(q.leftCols(1));
+Matrix weights(Eigen::Index k, bool of_contrasts) {
+  return of_contrasts ? contrasts(k)
+                      : Matrix(Matrix::Constant(k, 1, 1.0 / std::sqrt(static_cast<double>(k))));
 }
 
 Matrix kronecker(const Matrix& a, const Matrix& b) {
@@ -73,24 +68,6 @@ Scores scores(const RmDesign& design, unsigned mask, std::size_t groups) {
   return out;
 }
 
-/// Box's expansion of Mauchly's criterion for q contrasts with ν degrees of freedom.
-Mauchly mauchly_of(const Matrix& error, double nu) {
-  const double q = static_cast<double>(error.rows());
-  Mauchly out;
-  out.df = q * (q + 1.0) / 2.0 - 1.0;
-  out.w = out.chi_squared = out.p = std::numeric_limits<double>::quiet_NaN();
-  if (q < 2.0 || nu < q) return out;
-  out.w = error.determinant() / std::pow(error.trace() / q, q);
-  const double rho = 1.0 - (2.0 * q * q + q + 2.0) / (6.0 * q * nu);
-  out.chi_squared = -nu * rho * std::log(out.w);
-  const double w2 = (q + 2.0) * (q - 1.0) * (q - 2.0) *
-                    (2.0 * q * q * q + 6.0 * q * q + 3.0 * q + 2.0) /
-                    (288.0 * std::pow(nu * q * rho, 2.0));
-  const double first = chi_squared_upper(out.chi_squared, out.df);
-  out.p = first + w2 * (chi_squared_upper(out.chi_squared, out.df + 4.0) - first);
-  return out;
-}
-
 RmEffect effect(const Scores& s, bool with_group) {
   const double q = static_cast<double>(s.error.rows()), g = static_cast<double>(s.sizes.size());
   RmEffect out;
@@ -108,7 +85,7 @@ RmEffect effect(const Scores& s, bool with_group) {
   out.df2 = q * (s.n - g);
   out.f = (out.ss / out.df1) / (out.ss_error / out.df2);
   out.p = out.p_gg = out.p_hf = f_upper(out.f, out.df1, out.df2);
-  out.mauchly = mauchly_of(s.error, s.n - g);
+  out.mauchly = mauchly(s.error, s.n - g);
   out.partial_eta_squared = out.ss / (out.ss + out.ss_error);
   if (q < 2.0) return out;
   out.epsilon_gg = s.error.trace() * s.error.trace() / (q * s.error.squaredNorm());

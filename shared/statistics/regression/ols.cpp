@@ -14,55 +14,48 @@ namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kConstantShare = 1e-15;
-
 /// Below this share of its length a column is a combination of the others.
-template <class T>
-constexpr T kDependence = T(1e-11);
-template <>
-constexpr long double kDependence<long double> = 1e-13L;
+constexpr long double kDependence = 1e-13L;
 
-template <class T>
-using MatrixOf = Eigen::Matrix<T, Eigen::Dynamic, Eigen::Dynamic>;
-template <class T>
-using VectorOf = Eigen::Matrix<T, Eigen::Dynamic, 1>;
+// With 64 bits of mantissa: the certified digits of NIST's hard sets need them.
+using Real = long double;
+using ExtendedMatrix = Eigen::Matrix<Real, Eigen::Dynamic, Eigen::Dynamic>;
+using ExtendedVector = Eigen::Matrix<Real, Eigen::Dynamic, 1>;
 
 /// Mean of a column, taken about its first value so that a large common offset costs no digits.
-template <class T>
-T centre(VectorOf<T>& column) {
-  const T shift = column[0];
+Real centre(ExtendedVector& column) {
+  const Real shift = column[0];
   column.array() -= shift;
-  const T mean = column.mean();
+  const Real mean = column.mean();
   column.array() -= mean;
-  const T rest = column.mean();
+  const Real rest = column.mean();
   column.array() -= rest;
   return shift + (mean + rest);
 }
 
-/// The problem after centring and scaling, in the arithmetic T.
-template <class T>
+/// The problem after centring and scaling.
 struct Scaled {
-  MatrixOf<T> z;  // [observation][column], length one each
-  VectorOf<T> means, scales;
-  VectorOf<T> y;
-  T y_mean = 0;
+  ExtendedMatrix z;  // [observation][column], length one each
+  ExtendedVector means, scales;
+  ExtendedVector y;
+  Real y_mean = 0;
 };
 
-template <class T>
-Scaled<T> scaled(const Design& design, const Vector& response) {
+Scaled scaled(const Design& design, const Vector& response) {
   const Eigen::Index first = design.intercept ? 1 : 0;
-  Scaled<T> s;
-  s.z = design.columns.rightCols(design.columns.cols() - first).template cast<T>();
-  s.means = VectorOf<T>::Zero(s.z.cols());
-  s.scales = VectorOf<T>::Ones(s.z.cols());
-  s.y = response.cast<T>();
+  Scaled s;
+  s.z = design.columns.rightCols(design.columns.cols() - first).cast<Real>();
+  s.means = ExtendedVector::Zero(s.z.cols());
+  s.scales = ExtendedVector::Ones(s.z.cols());
+  s.y = response.cast<Real>();
   if (design.intercept) s.y_mean = centre(s.y);
   for (Eigen::Index j = 0; j < s.z.cols(); ++j) {
-    VectorOf<T> column = s.z.col(j);
+    ExtendedVector column = s.z.col(j);
     if (design.intercept) s.means[j] = centre(column);
-    const T length = column.stableNorm();
-    const T size = std::abs(s.means[j]) + length;
+    const Real length = column.stableNorm();
+    const Real size = std::abs(s.means[j]) + length;
     // A constant column leaves only rounding behind: to zero, so that the rank shows it.
-    if (length > T(kConstantShare) * size)
+    if (length > Real(kConstantShare) * size)
       s.z.col(j) = column / (s.scales[j] = length);
     else
       s.z.col(j).setZero();
@@ -71,44 +64,43 @@ Scaled<T> scaled(const Design& design, const Vector& response) {
 }
 
 /// What follows from the residual and the total sum of squares, with k columns beside an intercept.
-template <class T>
-void add_model(T rss, T tss, Eigen::Index k, Eigen::Index df_residual, Ols& out) {
-  const T df = T(df_residual);
+void add_model(Real rss, Real tss, Eigen::Index k, Eigen::Index df_residual, Ols& out) {
+  const Real df = Real(df_residual);
   out.rss = static_cast<double>(rss);
   out.sigma = static_cast<double>(std::sqrt(rss / df));
-  out.r_squared = static_cast<double>(T(1) - rss / tss);
-  out.adjusted_r_squared = static_cast<double>(T(1) - (rss / df) / (tss / T(df_residual + k)));
+  out.r_squared = static_cast<double>(Real(1) - rss / tss);
+  out.adjusted_r_squared =
+      static_cast<double>(Real(1) - (rss / df) / (tss / Real(df_residual + k)));
   out.f_df1 = static_cast<double>(k);
-  out.f = k > 0 ? static_cast<double>(((tss - rss) / T(k)) / (rss / df)) : kNaN;
+  out.f = k > 0 ? static_cast<double>(((tss - rss) / Real(k)) / (rss / df)) : kNaN;
 }
 
 /// Coefficients, (XᵀX)⁻¹, residuals and leverage; the rest follows in double.
 /// False when the columns are collinear.
-template <class T>
 bool solve(const Design& design, const Vector& response, Ols& out) {
   const Eigen::Index first = design.intercept ? 1 : 0, n = response.size();
-  const Scaled<T> s = scaled<T>(design, response);
+  const Scaled s = scaled(design, response);
   const Eigen::Index k = s.z.cols();
-  VectorOf<T> b = VectorOf<T>::Zero(k + first);
-  MatrixOf<T> unscaled = MatrixOf<T>::Zero(k + first, k + first);
-  VectorOf<T> leverage = VectorOf<T>::Constant(n, first ? T(1) / T(n) : T(0));
-  VectorOf<T> residuals = s.y;
+  ExtendedVector b = ExtendedVector::Zero(k + first);
+  ExtendedMatrix unscaled = ExtendedMatrix::Zero(k + first, k + first);
+  ExtendedVector leverage = ExtendedVector::Constant(n, first ? Real(1) / Real(n) : Real(0));
+  ExtendedVector residuals = s.y;
   if (k > 0) {
-    const Eigen::ColPivHouseholderQR<MatrixOf<T>> qr(s.z);
-    if (qr.matrixR().diagonal().cwiseAbs().minCoeff() < kDependence<T>) return false;
-    const VectorOf<T> g = qr.solve(s.y);
+    const Eigen::ColPivHouseholderQR<ExtendedMatrix> qr(s.z);
+    if (qr.matrixR().diagonal().cwiseAbs().minCoeff() < kDependence) return false;
+    const ExtendedVector g = qr.solve(s.y);
     residuals -= s.z * g;
-    const MatrixOf<T> r_inverse =
-        qr.matrixR().topLeftCorner(k, k).template triangularView<Eigen::Upper>().solve(
-            MatrixOf<T>::Identity(k, k));
-    const MatrixOf<T> root =
+    const ExtendedMatrix r_inverse =
+        qr.matrixR().topLeftCorner(k, k).triangularView<Eigen::Upper>().solve(
+            ExtendedMatrix::Identity(k, k));
+    const ExtendedMatrix root =
         s.scales.cwiseInverse().asDiagonal() * (qr.colsPermutation() * r_inverse).eval();
     b.tail(k) = g.cwiseQuotient(s.scales);
     unscaled.bottomRightCorner(k, k) = root * root.transpose();
     leverage += (s.z * (qr.colsPermutation() * r_inverse).eval()).rowwise().squaredNorm();
     if (first) {
       b[0] = s.y_mean - s.means.dot(b.tail(k));
-      const VectorOf<T> cross = unscaled.bottomRightCorner(k, k) * s.means;
+      const ExtendedVector cross = unscaled.bottomRightCorner(k, k) * s.means;
       unscaled.col(0).tail(k) = -cross;
       unscaled.row(0).tail(k) = -cross.transpose();
       unscaled(0, 0) = (root.transpose() * s.means).squaredNorm();
@@ -116,12 +108,12 @@ bool solve(const Design& design, const Vector& response, Ols& out) {
   } else {
     b[0] = s.y_mean;
   }
-  if (first) unscaled(0, 0) += T(1) / T(n);
-  out.coefficients = b.template cast<double>();
-  out.unscaled_covariance = unscaled.template cast<double>();
-  out.leverage = leverage.template cast<double>();
-  out.residuals = residuals.template cast<double>();
-  add_model<T>(residuals.squaredNorm(), s.y.squaredNorm(), k, n - k - first, out);
+  if (first) unscaled(0, 0) += Real(1) / Real(n);
+  out.coefficients = b.cast<double>();
+  out.unscaled_covariance = unscaled.cast<double>();
+  out.leverage = leverage.cast<double>();
+  out.residuals = residuals.cast<double>();
+  add_model(residuals.squaredNorm(), s.y.squaredNorm(), k, n - k - first, out);
   return true;
 }
 
@@ -135,8 +127,8 @@ bool solve_in_blocks(const Design& design, const Vector& response, Ols& out) {
   out.unscaled_covariance = fit->unscaled_covariance;
   blocks->residuals_and_leverage(*fit, out.residuals, out.leverage);
   const Eigen::Index k = design.columns.cols() - (design.intercept ? 1 : 0);
-  add_model<double>(out.residuals.squaredNorm(), blocks->total_sum_of_squares(), k,
-                    response.size() - design.columns.cols(), out);
+  add_model(out.residuals.squaredNorm(), blocks->total_sum_of_squares(), k,
+            response.size() - design.columns.cols(), out);
   return true;
 }
 
@@ -174,9 +166,7 @@ core::Result<Ols> ols(const Design& design, const Vector& response) {
   // Blocks need every number finite and a response that varies, and say so themselves.
   if (!is_large(design) || !solve_in_blocks(design, response, fit)) {
     TRY(check(design, response));
-    const bool full_rank = is_large(design) ? solve<double>(design, response, fit)
-                                            : solve<long double>(design, response, fit);
-    if (!full_rank) return collinear_error(design);
+    if (!solve(design, response, fit)) return collinear_error(design);
   }
   if (!fit.coefficients.allFinite() || !fit.unscaled_covariance.allFinite() ||
       !std::isfinite(fit.rss) || !(fit.unscaled_covariance.diagonal().minCoeff() > 0.0) ||
