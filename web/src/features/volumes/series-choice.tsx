@@ -40,11 +40,11 @@ interface Props {
   readonly onChoose: (series: DicomSeries) => void;
 }
 
-/** A volume is one series: where a folder holds several, a person chooses. */
+/** A volume is one series: where a folder or a zip holds several, a person chooses. */
 export function SeriesChoice({ series, chosen, onChoose }: Props) {
   return (
     <div className={styles.stack}>
-      <Notice tone="info" title={say('The folder holds {count} series. Choose one.', { count: series.length })}>
+      <Notice tone="info" title={say('{count} series were found. Choose one.', { count: series.length })}>
         {say(
           'Only the files of the chosen series are uploaded. For palpation choose thin slices and a kernel for bone.',
         )}

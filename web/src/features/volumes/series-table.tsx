@@ -65,7 +65,9 @@ export function SeriesTable<Row extends Series>({ series, chosen, onChoose, pict
           name: marked('Choose'),
           cell: (one) => (
             <Button aria-pressed={one.uid === chosen} onClick={() => onChoose(one)}>
-              {say('Choose series {number}', { number: counted(one.number) })}
+              {say('Choose series {number}', {
+                number: one.number === null ? one.description : formatCount(one.number),
+              })}
             </Button>
           ),
         },

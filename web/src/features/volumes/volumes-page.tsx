@@ -5,6 +5,7 @@ import { addVolume, sourceVolumesQuery, type SourceVolume } from '@/api';
 import { marked, say } from '@/language';
 import { Badge, Button, Card, DataTable, DropZone, Field, Notice, Progress, useTitle, type Dropped } from '@/ui';
 import { formatBytes, formatCount, formatDateTime, formatShare, share } from '@/units';
+import { opened } from './archive';
 import { dicomSeries, type DicomSeries } from './dicom-series';
 import { nameFrom, pack } from './pack';
 import { FromPacs } from './pacs';
@@ -23,7 +24,9 @@ function Upload() {
   const [, go] = useLocation();
   const [files, setFiles] = useState<readonly Dropped[]>([]);
   const [chosen, setChosen] = useState<DicomSeries | null>(null);
-  const read = useMutation({ mutationFn: (dropped: readonly Dropped[]) => dicomSeries(dropped) });
+  const read = useMutation({
+    mutationFn: async (dropped: readonly Dropped[]) => dicomSeries(await opened(dropped)),
+  });
   const several = (read.data?.length ?? 0) > 1;
   const parts = several ? (chosen?.slices ?? []) : files;
   const [name, setName] = useState('');
@@ -53,8 +56,8 @@ function Upload() {
       <div className={styles.stack}>
         <DropZone
           label={say('New volume')}
-          folder={say('A folder with the slices of one DICOM series')}
-          files={say('A zip of one DICOM series, or a NIfTI, NRRD or .tvol file')}
+          folder={say('A folder of DICOM slices')}
+          files={say('A zip of DICOM slices, or a NIfTI, NRRD or .tvol file')}
           choose={say('Choose file')}
           busy={sent.isPending ? phase : read.isPending ? say('Reading the files…') : null}
           onFiles={(dropped) => {
@@ -67,7 +70,7 @@ function Upload() {
         >
           {files.length === 0
             ? say(
-                'Drop a CT here: a folder or a zip of one DICOM series, or a file in NIfTI (.nii, .nii.gz), NRRD or .tvol, zipped or not.',
+                'Drop a CT here: a folder or a zip of DICOM slices, or a file in NIfTI (.nii, .nii.gz), NRRD or .tvol, zipped or not.',
               )
             : say('{count, plural, one {# file} other {# files}}, {size}', {
                 count: counted.length,

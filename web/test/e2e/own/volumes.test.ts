@@ -1,4 +1,4 @@
-/** A folder with two series in it, from the choice to the volume on a real server. The CT is simulated. */
+/** A folder and a zip with two series in them, from the choice to the volume on a real server. The CT is simulated. */
 import { execFileSync } from 'node:child_process';
 import { mkdirSync } from 'node:fs';
 import { join } from 'node:path';
@@ -12,7 +12,7 @@ const bin = programs('tractus-server');
 const kWriters = fileURLToPath(new URL('../../../../tests/dicomweb', import.meta.url));
 // 6 slices of 3 mm and 12 of 1 mm, in one folder as a CD has them, beside its index.
 const kWrite = `
-import pathlib, sys
+import pathlib, shutil, sys
 sys.path.insert(0, sys.argv[1])
 import series
 folder = pathlib.Path(sys.argv[2])
@@ -21,9 +21,10 @@ for uid, slices, mm, words, number in (("2.25.11", 6, 3.0, "soft tissue", 2), ("
                                            number_of_series=number)):
         (folder / f"{number}{k:03}").write_bytes(data)
 (folder / "DICOMDIR").write_bytes(b"an index")
+shutil.make_archive(sys.argv[2], "zip", folder.parent, folder.name)
 `;
 
-describe.skipIf(bin === undefined)('a folder with two series', () => {
+describe.skipIf(bin === undefined)('a folder or a zip with two series', () => {
   let browser: Browser, served: Served, page: Page, folder: string;
   beforeAll(async () => {
     served = await serveReal(bin ?? '');
@@ -46,8 +47,8 @@ describe.skipIf(bin === undefined)('a folder with two series', () => {
   });
 
   it('is shown with what each series is, and waits for a choice', async () => {
-    await page.getByLabel('A folder with the slices of one DICOM series').setInputFiles(folder);
-    await page.getByText('The folder holds 2 series. Choose one.').waitFor();
+    await page.getByLabel('A folder of DICOM slices').setInputFiles(folder);
+    await page.getByText('2 series were found. Choose one.').waitFor();
     const rows = page.getByRole('table', { name: 'Series of the study' }).locator('tbody tr');
     expect(await rows.count()).toBe(2);
     const thin = (await rows.nth(0).innerText()).replace(/\s+/g, ' '); // the one with most slices comes first
@@ -73,15 +74,34 @@ describe.skipIf(bin === undefined)('a folder with two series', () => {
   });
 
   it('becomes a volume of the chosen series alone', async () => {
-    await page.getByRole('button', { name: 'Choose series 3' }).click();
-    await page.getByText('12 files').first().waitFor();
+    await upload('Choose series 3', 12);
+    expect(await volume()).toEqual({ dims: [32, 32, 12], spacing_mm: [0.5, 0.5, 1] });
+  });
+
+  it('is opened where it is a zip', async () => {
+    await page.goto('/volumes');
+    await page.getByLabel('A zip of DICOM slices, or a NIfTI, NRRD or .tvol file').setInputFiles(`${folder}.zip`);
+    await page.getByText('2 series were found. Choose one.').waitFor();
+    expect(await page.getByRole('table', { name: 'Series of the study' }).locator('canvas').count()).toBe(2);
+    expect(await page.getByLabel('Name, without a patient’s name').first().inputValue()).toBe('');
+    await page.getByLabel('Name, without a patient’s name').first().fill('simulated spine, thick slices');
+    await upload('Choose series 2', 6);
+    expect(await volume()).toEqual({ dims: [32, 32, 6], spacing_mm: [0.5, 0.5, 3] });
+  });
+
+  async function upload(choice: string, count: number): Promise<void> {
+    await page.getByRole('button', { name: choice }).click();
+    await page.getByText(`${count} files`).first().waitFor();
     await page.getByRole('button', { name: 'Upload', exact: true }).click();
     await page.waitForURL(/\/volumes\/[0-9a-f]{32}$/);
+  }
+
+  /** What the server says of the volume whose page is shown. */
+  async function volume(): Promise<{ dims: number[]; spacing_mm: number[] }> {
     const { dims, spacing_m } = await page.evaluate(async (id) => {
       const answer = await fetch(`/api/v1/volumes/${id}`);
       return (await answer.json()) as { dims: number[]; spacing_m: number[] };
     }, page.url().split('/').at(-1));
-    expect(dims).toEqual([32, 32, 12]);
-    expect(spacing_m.map((value) => Number(value.toFixed(6)))).toEqual([0.0005, 0.0005, 0.001]);
-  });
+    return { dims, spacing_mm: spacing_m.map((value) => Number((1000 * value).toFixed(3))) };
+  }
 });
