@@ -298,7 +298,7 @@ TEST_F(Relations, ARouteThatChangesSomethingNamesEveryEndOrIsOfOneObject) {
       "checkEffect", "startDiagnosis", "startComparison", "startFit", "stopLabRun", "publishLabRun",
       "addRubric",
       // released trials alone (db/store/cohort/released.hpp)
-      "lockAnalysisPlan", "analyseCohort",
+      "lockAnalysisPlan", "analyseCohort", "stopCohortAnalysis",
       // the server's own
       "previewRetention", "setRetention", "makeBackup", "verifyBackup"};
   std::set<std::string> unnamed;

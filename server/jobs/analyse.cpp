@@ -1,5 +1,7 @@
 #include "server/jobs/analyse.hpp"
 
+#include <chrono>
+
 #include "assessment/analyse.hpp"
 #include "assessment/plan_page.hpp"
 #include "assessment/snapshot.hpp"
@@ -22,6 +24,7 @@ using core::Result;
 
 constexpr std::int64_t kMostTrials = 100'000;
 constexpr std::uint64_t kMostData_bytes = 512ull << 20;
+constexpr std::chrono::milliseconds kBetweenShares{500};  // two notes of the share
 
 Result<store::AnalysisRun> asked_analysis(store::Store& store, const std::string& id) {
   const auto run = TRY(store.read([&](store::Reading& tx) { return store::analysis_of(tx, id); }));
@@ -117,10 +120,13 @@ Result<void> analyse(store::Store& store, const store::Objects& objects,
                      const std::function<bool()>& ending) {
   auto run = TRY(asked_analysis(store, analysis_id));
   if (run.state != store::WorkState::queued && run.state != store::WorkState::running) return {};
-  const auto note = [&](double share) {
-    return store.write([&](store::Writing& tx) {
+  bool stopped = false;  // by a person
+  const auto note = [&](double share) -> Result<void> {
+    stopped = !TRY(store.write([&](store::Writing& tx) {
       return store::note_analysis_share(tx, run.id, share, core::utc_us());
-    });
+    }));
+    if (stopped) return Error{Errc::cancelled, "stopped"};
+    return {};
   };
   TRY(note(0.0));
   const auto plan = TRY(plan_of(objects, run));
@@ -129,17 +135,19 @@ Result<void> analyse(store::Store& store, const store::Objects& objects,
   TRY(note(0.2));
   if (ending()) return Error{Errc::cancelled, "stopped"};
   const auto& d = snapshot.description;
-  double noted = 0.2;
+  auto next = std::chrono::steady_clock::now();
   const auto analysed =
       TRY(assessment::analyse(plan, snapshot.table,
                               {d["name"], *run.snapshot, d["frozen_utc"], d.value("source", ""),
                                d.value("simulated", false)},
                               [&](double share) {
-                                const double now = 0.2 + 0.7 * share;
                                 if (ending()) return false;
+                                const auto now = std::chrono::steady_clock::now();
+                                if (now < next) return true;
+                                next = now + kBetweenShares;
                                 // A share that could not be noted is noted with the next one.
-                                if (now >= noted + 0.01 && note(now)) noted = now;
-                                return true;
+                                (void)note(0.2 + 0.7 * share);
+                                return !stopped;
                               }));
   // A plan goes on where one of its analyses cannot be done; a single question has no answer then.
   if (const auto& first = analysed.result["analyses"][0]; !run.plan_id && first.contains("error"))

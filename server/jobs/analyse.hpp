@@ -15,8 +15,8 @@ namespace tractus::jobs {
 /// @param key  of the pseudonyms that the table names people and trials by.
 /// @param ending  true when the server wants to end.
 /// Errors: not_found, unavailable (no key), too_large (over 100 000 trials), those of reading and
-/// of the plan; bad_input where a run without a locked plan could not be done; cancelled when the
-/// server ends.
+/// of the plan; bad_input where a run without a locked plan could not be done; cancelled when
+/// someone stopped it, or the server ends.
 core::Result<void> analyse(store::Store& store, const store::Objects& objects,
                            const std::optional<store::PseudonymKey>& key,
                            const std::string& analysis_id, const std::function<bool()>& ending);

@@ -89,11 +89,13 @@ core::Result<std::optional<AnalysisRun>> analysis_repeated_by(Reading& tx, const
       run_from);
 }
 
-core::Result<void> note_analysis_share(Writing& tx, const std::string& id, double share,
+core::Result<bool> note_analysis_share(Writing& tx, const std::string& id, double share,
                                        std::int64_t now_utc_us) {
-  return done(
-      tx.query("update analyses set state = 'running', share = ?, changed_utc_us = ? where id = ?",
-               {share, now_utc_us, id}));
+  const auto rows =
+      TRY(tx.query("update analyses set state = 'running', share = ?, changed_utc_us = ? "
+                   "where id = ? and state in ('queued', 'running') returning id",
+                   {share, now_utc_us, id}));
+  return !rows.empty();
 }
 
 core::Result<void> note_analysis_snapshot(Writing& tx, const std::string& id,
@@ -107,14 +109,15 @@ core::Result<void> note_analysis_snapshot(Writing& tx, const std::string& id,
 core::Result<void> finish_analysis(Writing& tx, const AnalysisRun& run, std::int64_t now_utc_us) {
   return done(
       tx.query("update analyses set state = 'done', share = 1.0, result = ?, report = ?, data = ?, "
-               "changed_utc_us = ? where id = ?",
+               "changed_utc_us = ? where id = ? and state in ('queued', 'running')",
                {or_null(run.result), or_null(run.report), or_null(run.data), now_utc_us, run.id}));
 }
 
 core::Result<void> fail_analysis(Writing& tx, const std::string& id, const std::string& why,
                                  std::int64_t now_utc_us) {
   return done(
-      tx.query("update analyses set state = 'failed', error = ?, changed_utc_us = ? where id = ?",
+      tx.query("update analyses set state = 'failed', error = ?, changed_utc_us = ? "
+               "where id = ? and state in ('queued', 'running')",
                {why, now_utc_us, id}));
 }
 

@@ -45,14 +45,16 @@ core::Result<std::vector<AnalysisRun>> analyses_of_plan(Reading& tx, const std::
 /// The first finished run of the same plan on the same data, before this run.
 core::Result<std::optional<AnalysisRun>> analysis_repeated_by(Reading& tx, const AnalysisRun& run);
 
-core::Result<void> note_analysis_share(Writing& tx, const std::string& id, double share,
+/// False: it was stopped, or is done; nothing was noted.
+core::Result<bool> note_analysis_share(Writing& tx, const std::string& id, double share,
                                        std::int64_t now_utc_us);
 /// Records the frozen data of the run.
 core::Result<void> note_analysis_snapshot(Writing& tx, const std::string& id,
                                           const std::string& snapshot,
                                           const std::string& description, std::int64_t now_utc_us);
-/// `done` as in AnalysisRun: result, report, data.
+/// `done` as in AnalysisRun: result, report, data. An analysis that was stopped stays so.
 core::Result<void> finish_analysis(Writing& tx, const AnalysisRun& done, std::int64_t now_utc_us);
+/// Of one that is queued or running; any other stays as it is.
 core::Result<void> fail_analysis(Writing& tx, const std::string& id, const std::string& why,
                                  std::int64_t now_utc_us);
 

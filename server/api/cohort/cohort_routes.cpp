@@ -112,6 +112,15 @@ Result<http::Response> analysis(const Call& call) {
   return json_response(json);
 }
 
+Result<http::Response> stop_analysis(const Call& call) {
+  const auto run = TRY(analysis_of(call));
+  TRY(call.backend.store.write([&](store::Writing& tx) {
+    return store::fail_analysis(tx, run.id, "stopped by " + call.caller.name,
+                                call.backend.now_utc_us());
+  }));
+  return json_response(analysis_summary(TRY(analysis_of(call))));
+}
+
 /// One file of a finished run.
 Result<http::Response> part_of(const Call& call) {
   const auto run = TRY(analysis_of(call));
@@ -266,21 +275,25 @@ std::vector<RouteInfo> cohort_routes() {
                        .meaning = "Only trials of the study with this id",
                        .required = false,
                        .fallback = std::nullopt}};
-  return {taking(cohort_route("POST", "plans", "lockAnalysisPlan",
-                              "Lock an analysis plan before its data are seen", "LockedPlan",
-                              lock_plan),
-                 "PlanToLock", kMaxCohortPlan_bytes, plan_schemas()),
-          list,
-          one,
-          taking(cohort_route(
-                     "POST", "analyses", "analyseCohort",
-                     "Queue an analysis of the scored trials, either with a locked plan or with "
-                     "one method",
-                     "CohortAnalysis", analyse_cohort),
-                 "CohortQuestion", kMaxCohortAsk_bytes, run_schemas()),
-          answered,
-          part,
-          table};
+  return {
+      taking(
+          cohort_route("POST", "plans", "lockAnalysisPlan",
+                       "Lock an analysis plan before its data are seen", "LockedPlan", lock_plan),
+          "PlanToLock", kMaxCohortPlan_bytes, plan_schemas()),
+      list,
+      one,
+      taking(
+          cohort_route("POST", "analyses", "analyseCohort",
+                       "Queue an analysis of the scored trials, either with a locked plan or with "
+                       "one method",
+                       "CohortAnalysis", analyse_cohort),
+          "CohortQuestion", kMaxCohortAsk_bytes, run_schemas()),
+      answered,
+      cohort_route("POST", "analyses/{id}/stop", "stopCohortAnalysis",
+                   "Stop an analysis that is queued or running; one that is done stays as it is",
+                   "CohortAnalysis", stop_analysis),
+      part,
+      table};
 }
 
 }  // namespace api

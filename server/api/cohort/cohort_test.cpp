@@ -411,6 +411,38 @@ TEST_F(Cohort, RefusesWhatIsWrongAndNamesIt) {
   EXPECT_EQ(get("analyses/" + id + "/dictionary.json").status, 404);
 }
 
+TEST_F(Cohort, StopsAnAnalysisThatWaitsOrRuns) {
+  const core::Json asked{{"method", "anova"}, {"formula", "score_N ~ level"}};
+  const auto queued = [&] { return json(post("analyses", asked)).value("id", ""); };
+  const auto done = [&](const std::string& id, const std::function<bool()>& ending) {
+    return jobs::analyse(store_, objects_, backend_.pseudonym_key, id, ending);
+  };
+  const auto stop = [&](const std::string& id) {
+    return ask(request("POST", "/api/v1/cohort/analyses/" + id + "/stop", own_, ""));
+  };
+  const std::string waiting = queued();
+  const auto stopped = stop(waiting);
+  EXPECT_EQ(stopped.status, 200) << text(stopped);
+  EXPECT_EQ(json(stopped)["state"], "failed");
+  EXPECT_THAT(json(stopped).value("error", ""), HasSubstr("stopped by "));
+  EXPECT_TRUE(done(waiting, [] { return false; }));
+  EXPECT_EQ(json(get("analyses/" + waiting))["state"], "failed") << "its job does nothing";
+
+  const std::string running = queued();
+  const auto ended = done(running, [&] {
+    stop(running);
+    return false;
+  });
+  ASSERT_FALSE(ended);
+  EXPECT_EQ(ended.error().code, core::Errc::cancelled);
+  EXPECT_EQ(json(get("analyses/" + running))["state"], "failed");
+
+  const std::string finished = analysed(asked)["id"];
+  EXPECT_EQ(stop(finished).status, 200);
+  EXPECT_EQ(json(get("analyses/" + finished))["state"], "done");
+  EXPECT_EQ(stop("none").status, 404);
+}
+
 TEST_F(Cohort, TellsHowFarATraineeIsByTheTrialsThatCountAlone) {
   // Right, wrong, right. By hand: a right answer adds ln(0.90/0.75), a wrong one ln(0.10/0.25),
   // never below zero; Wilson's 95 % interval of 2 in 3 is 0.2077 to 0.9385.

@@ -174,6 +174,8 @@ export const runPlan = (plan: string, snapshot?: string) =>
     method: 'POST',
     body: { plan, ...(snapshot === undefined ? {} : { snapshot }) },
   });
+export const stopAnalysis = (id: string) =>
+  requestJson(address('/api/v1/cohort/analyses/{id}/stop', { id }), analysisRunSchema, { method: 'POST' });
 export const runMethod = (
   method: string,
   formula: string,

@@ -1,12 +1,33 @@
-import { useQuery } from '@tanstack/react-query';
+import { useMutation, useQuery, useQueryClient } from '@tanstack/react-query';
 import { Link } from 'wouter';
-import { analysisFile, analysisQuery, readAnalysisResult } from '@/api';
+import { analysisFile, analysisQuery, readAnalysisResult, stopAnalysis } from '@/api';
 import { say } from '@/language';
-import { Badge, Card, Notice, Progress, Skeleton, useTitle } from '@/ui';
+import { Badge, Button, Card, Notice, Progress, Skeleton, useTitle } from '@/ui';
 import { formatDateTime } from '@/units';
 import styles from './analysis.module.css';
 import published from './published.json';
 import { ResultView } from './result-view';
+
+function Running({ id, share }: { readonly id: string; readonly share: number }) {
+  const client = useQueryClient();
+  const stopped = useMutation({
+    mutationFn: () => stopAnalysis(id),
+    onSuccess: () => client.invalidateQueries({ queryKey: analysisQuery(id).queryKey }),
+  });
+  return (
+    <Card title={say('Running')}>
+      <Progress done={share} of={1} label={say('Progress')} />
+      <Button onClick={() => stopped.mutate()} disabled={stopped.isPending}>
+        {stopped.isPending ? say('Stopping…') : say('Cancel')}
+      </Button>
+      {stopped.isError ? (
+        <Notice tone="bad" title={say('The analysis could not be stopped.')}>
+          {stopped.error.message}
+        </Notice>
+      ) : null}
+    </Card>
+  );
+}
 
 /** One run of an analysis: its progress, then its result. */
 export function RunPage({ id }: { readonly id: string }) {
@@ -79,9 +100,7 @@ export function RunPage({ id }: { readonly id: string }) {
       ) : null}
       {run.state === 'queued' || run.state === 'running' ? (
         <>
-          <Card title={say('Running')}>
-            <Progress done={run.share} of={1} label={say('Progress')} />
-          </Card>
+          <Running id={id} share={run.share} />
           <Skeleton height="640px" />
         </>
       ) : null}
