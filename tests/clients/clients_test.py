@@ -14,6 +14,7 @@ import tempfile
 import threading
 import types
 import unittest
+import unittest.mock
 import zipfile
 from pathlib import Path
 
@@ -205,6 +206,7 @@ class CuttingServer(http.server.ThreadingHTTPServer):
     def __init__(self):
         super().__init__(("127.0.0.1", 0), Handler)
         self.content, self.cuts, self.cut_bytes, self.runs, self.tag = cohort_zip(), 0, 40_000, 0, None
+        self.stopped = 0
         threading.Thread(target=self.serve_forever, daemon=True).start()
 
     @property
@@ -242,6 +244,9 @@ class Handler(http.server.BaseHTTPRequestHandler):
         self.say(json.dumps({"error": error, "code": code}).encode(), status)
 
     def do_POST(self):
+        if self.path == "/api/v1/cohort/analyses/abc/stop":
+            self.server.stopped += 1
+            return self.say(json.dumps({"id": "abc", "state": "failed"}).encode())
         asked = json.loads(self.rfile.read(int(self.headers["Content-Length"])))
         if asked.get("formula") == "correct ~ nothing":
             return self.refuse(400, "formula: there is no column nothing", "bad_input")
@@ -367,6 +372,22 @@ tractus_cohort(tractus_server("{self.peer.url}", "tractus_good"), "{self.to}", t
         self.assertEqual(self.server.analyse("anova", "correct ~ level")["result"], {"p": 0.5})
         with self.assertRaisesRegex(TractusError, "no column nothing"):
             self.server.analyse("anova", "correct ~ nothing")
+
+    def test_an_analysis_ends_with_its_waiting(self):
+        with unittest.mock.patch("tractus_client.server.time.sleep", side_effect=KeyboardInterrupt):
+            with self.assertRaises(KeyboardInterrupt):
+                self.server.analyse("anova", "correct ~ level")
+        self.assertEqual(self.peer.stopped, 1)
+
+    @unittest.skipUnless(has_r("jsonlite", "curl"), "R with jsonlite and curl is not installed")
+    def test_in_r_an_analysis_ends_with_its_waiting(self):
+        ran = run_r(f"""
+server <- tractus_server("{self.peer.url}", "tractus_good")
+Sys.sleep <- function(s) signalCondition(structure(class = c("interrupt", "condition"), list()))
+tryCatch(tractus_analyse(server, "anova", "correct ~ level"), interrupt = function(condition) cat("interrupted"))
+""")
+        self.assertEqual((ran.returncode, ran.stdout), (0, "interrupted"), ran.stderr)
+        self.assertEqual(self.peer.stopped, 1)
 
     def test_what_cannot_be_asked_is_said_in_words(self):
         with self.assertRaisesRegex(TractusError, "the token is not valid; .*make a new one"):

@@ -170,11 +170,19 @@ class Server:
         """A run as it is now; `result` is None until it is done."""
         return self.ask("GET", f"/cohort/analyses/{analysis_id}")
 
+    def stop_analysis(self, analysis_id):
+        """Stops a run that is queued or running; one that is done stays as it is."""
+        return self.ask("POST", f"/cohort/analyses/{analysis_id}/stop")
+
     def _analysed(self, body):
         run = self.ask("POST", "/cohort/analyses", body=body)
-        while run["state"] in ("queued", "running"):
-            time.sleep(0.2)
-            run = self.analysis(run["id"])
+        try:
+            while run["state"] in ("queued", "running"):
+                time.sleep(0.2)
+                run = self.analysis(run["id"])
+        except KeyboardInterrupt:
+            self.stop_analysis(run["id"])
+            raise
         if run["state"] != "done":
             raise TractusError(f"the analysis failed: {run['error']}")
         return self.analysis(run["id"])

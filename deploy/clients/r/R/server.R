@@ -192,13 +192,19 @@ tractus_analyse <- function(server, method, formula, study = NULL, ...) {
   analysed(server, body)
 }
 
+#' Stops a run that is queued or running; one that is done stays as it is.
+tractus_stop_analysis <- function(server, analysis_id) {
+  tractus_ask(server, "POST", paste0("/cohort/analyses/", analysis_id, "/stop"))
+}
+
 analysed <- function(server, body) {
   run <- tractus_ask(server, "POST", "/cohort/analyses", body = body)
-  repeat {
-    run <- tractus_ask(server, "GET", paste0("/cohort/analyses/", run$id))
+  id <- run$id
+  withCallingHandlers(repeat {
+    run <- tractus_ask(server, "GET", paste0("/cohort/analyses/", id))
     if (!run$state %in% c("queued", "running")) break
     Sys.sleep(0.2)
-  }
+  }, interrupt = function(condition) tractus_stop_analysis(server, id))
   if (run$state != "done") stop("the analysis failed: ", run$error, call. = FALSE)
   run
 }
