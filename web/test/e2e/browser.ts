@@ -31,6 +31,12 @@ export interface Visit {
   readonly faults: string[];
 }
 
+/** What a page did until now is no jump: a person asked for it, and the answer came later than the half second that a browser allows. */
+export const forgetJumps = (page: Page) =>
+  page.evaluate(() => {
+    Object.assign(window, { layoutShift: 0, layoutShiftOf: [] });
+  });
+
 /** How far the page has jumped since it was loaded (cumulative layout shift), and what jumped. Above 0.1 a person notices. */
 export const jumped = (page: Page) =>
   page.evaluate(() => {
