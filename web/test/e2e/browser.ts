@@ -31,7 +31,7 @@ export interface Visit {
   readonly faults: string[];
 }
 
-/** What a page did until now is no jump: a person asked for it, and the answer came later than the half second that a browser allows. */
+/** Sets the count of `jumped` to zero, after a change that a click asked for: a browser excuses it for 500 ms, a slow answer comes later. */
 export const forgetJumps = (page: Page) =>
   page.evaluate(() => {
     Object.assign(window, { layoutShift: 0, layoutShiftOf: [] });
