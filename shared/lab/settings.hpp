@@ -256,6 +256,9 @@ struct SelectionSettings {
   /// Share by which an effect must lower the error on held-out trials, without weights: less is not material, and
   /// small flaws of any motion or sensor make 0.3 to 1 % of it. Bound.
   double least_fall = 0.02;
+  /// The same of an effect that is free in each trial: a sensor's cross-talk and slow noise, followed by numbers of each
+  /// trial's own, make 3 % of it. Bound.
+  double least_fall_of_free = 0.05;
   /// A further effect must lower the loss, 2 nats, by so much for each number added. Tuned.
   double clear_loss = 30.0;
   /// Structures of a size that are grown by one effect. Bound.
@@ -321,6 +324,8 @@ struct ValidationSettings {
   double most_of_one_fold = 0.9;
   /// Student's 95 % point over the normal's, squared, to first order in 1/k. Derived.
   double few_clusters = 3.0;
+  /// Chance that any effect of a catalogue is named though the base has all: convention.
+  double found_by_chance = 0.05;
   /// A number whose standard error is more than this share of its prior's is not informed by the
   /// data. Tuned.
   double uninformed = 0.95;

@@ -129,8 +129,14 @@ TEST(BoucWen, IsDahlsWithoutItsShape) {
 
 TEST(DirectionDependentDrag, AddsInAndTakesOut) {
   // 50 N·s/m · 0.02 m/s = 1 N either way.
-  EXPECT_NEAR(force_N({{"direction_dependent_drag", {50.0}}}, moment(0.0, 0.02))[0], 1.0, 1e-12);
-  EXPECT_NEAR(force_N({{"direction_dependent_drag", {50.0}}}, moment(0.0, -0.02))[0], 1.0, 1e-12);
+  const auto drag = [](double v_m_s, double mean_Ns_per_m) {
+    return force_N({{"direction_dependent_drag", {50.0, mean_Ns_per_m}}}, moment(0.0, v_m_s))[0];
+  };
+  EXPECT_NEAR(drag(0.02, 0.0), 1.0, 1e-12);
+  EXPECT_NEAR(drag(-0.02, 0.0), 1.0, 1e-12);
+  // On the way in alone: 2 · 50 N·s/m · 0.02 m/s there, nothing on the way out.
+  EXPECT_NEAR(drag(0.02, 50.0), 2.0, 1e-12);
+  EXPECT_NEAR(drag(-0.02, 50.0), 0.0, 1e-12);
 }
 
 TEST(Hysteresis, StaysWhereItIsWhileTheProbeRests) {

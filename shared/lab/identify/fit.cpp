@@ -5,11 +5,13 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "lab/identify/effect_screen.hpp"
 #include "lab/identify/fit_report.hpp"
 #include "lab/identify/parallel.hpp"
 #include "lab/settings.hpp"
+#include "statistics/distributions/distributions.hpp"
 
 namespace tractus {
 namespace lab {
@@ -45,16 +47,11 @@ std::vector<Fold> folds_of(const Residual& residual) {
   return out;
 }
 
-/// Values without a fold: one step of Newton's from the whole's, in the directions that the rest
-/// informs too. (A number that one trial alone informs, as a layer that only it entered, cannot be
-/// predicted from the others; it stays. So does the place of a border: the loss has no slope in it,
-/// and every trial that crosses it tells it alike.)
-std::vector<double> without(const Solution& at, const Gram& whole, const Gram& fold) {
-  std::vector<double> values = at.values;
-  std::vector<Eigen::Index> moved;
-  for (std::size_t k = 0; k < values.size(); ++k)
-    if (!(at.parameters[k].rough > 0.0)) moved.push_back(Eigen::Index(k));
-  if (moved.empty()) return values;
+/// How far the coordinates of some numbers move when a fold is left out: one step of Newton's from the whole's, in the
+/// directions that the rest informs too. (A number that one trial alone informs, as a layer that only it entered, cannot
+/// be predicted from the others; it stays.)
+Eigen::VectorXd step_without(const Gram& whole, const Gram& fold,
+                             const std::vector<Eigen::Index>& moved) {
   const Eigen::MatrixXd all = whole.a(moved, moved), part = fold.a(moved, moved);
   const Eigen::VectorXd unit = all.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
   Eigen::MatrixXd a = unit.asDiagonal() * all * unit.asDiagonal();
@@ -66,7 +63,18 @@ std::vector<double> without(const Solution& at, const Gram& whole, const Gram& f
     const double share = eigen.eigenvalues()(k);  // of what is known of this direction
     along(k) = share > kValidation.most_of_one_fold ? 0.0 : along(k) / (1.0 - share);
   }
-  const Eigen::VectorXd step = unit.asDiagonal() * (eigen.eigenvectors() * along);
+  return unit.asDiagonal() * (eigen.eigenvectors() * along);
+}
+
+/// Values without a fold. The place of a border stays: the loss has no slope in it, and every trial that crosses it tells
+/// it alike.
+std::vector<double> without(const Solution& at, const Gram& whole, const Gram& fold) {
+  std::vector<double> values = at.values;
+  std::vector<Eigen::Index> moved;
+  for (std::size_t k = 0; k < values.size(); ++k)
+    if (!(at.parameters[k].rough > 0.0)) moved.push_back(Eigen::Index(k));
+  if (moved.empty()) return values;
+  const Eigen::VectorXd step = step_without(whole, fold, moved);
   for (std::size_t i = 0; i < moved.size(); ++i) {
     const auto k = std::size_t(moved[i]);
     const Parameter& p = at.parameters[k];
@@ -103,36 +111,54 @@ double root_mean(double sum, double count) {
   return count > 0.0 ? std::sqrt(sum / count) : std::numeric_limits<double>::quiet_NaN();
 }
 
-/// Variances of the numbers from how far the trials (or stretches of time) disagree on them, which
-/// counts what neighbouring residuals have in common: the cluster-robust estimate of [Liang1986],
-/// widened for few clusters.
+/// Variances of the numbers' coordinates by the jackknife over the trials (or stretches of time) about what all of them
+/// give, which counts what neighbouring residuals have in common and a trial that alone decides [Efron1981].
 Eigen::VectorXd disagreement(const Residual& residual, const Solution& at,
-                             const Eigen::VectorXd& weights, const Eigen::MatrixXd& covariance) {
+                             const Eigen::VectorXd& weights, const Gram& whole) {
   const auto folds = folds_of(residual);
-  Eigen::VectorXd out = Eigen::VectorXd::Zero(covariance.rows());
-  if (folds.size() < 2) return out;
-  for (const Fold& fold : folds)
-    out += (covariance * gram(at, weights, fold.first, fold.count).b).cwiseAbs2();
-  const double k = double(folds.size());
-  return out * (k / (k - 1.0)) * (1.0 + kValidation.few_clusters / k);
+  const auto n = Eigen::Index(at.values.size()), k = Eigen::Index(folds.size());
+  std::vector<Eigen::Index> all(static_cast<std::size_t>(n));
+  std::iota(all.begin(), all.end(), Eigen::Index{0});
+  Eigen::MatrixXd steps(n, k);
+  for (Eigen::Index f = 0; f < k; ++f) {
+    const Fold& fold = folds[std::size_t(f)];
+    steps.col(f) = step_without(whole, gram(at, weights, fold.first, fold.count), all);
+  }
+  return steps.rowwise().squaredNorm() * (double(k - 1) / double(k));
+}
+
+/// How well the numbers' coordinates are known.
+struct Knowledge {
+  Eigen::MatrixXd covariance;  ///< by the normal equations
+  Eigen::VectorXd variances;   ///< theirs, or the trials' where these disagree more
+};
+
+Knowledge known_of(const Residual& residual, const Solution& at, const Eigen::VectorXd& weights,
+                   const Gram& whole) {
+  const auto n = Eigen::Index(at.values.size());
+  Eigen::MatrixXd covariance(n, n);
+  for (Eigen::Index k = 0; k < n; ++k)
+    covariance.col(k) = solve(whole.a, Eigen::VectorXd::Unit(n, k));
+  Eigen::VectorXd variances = (covariance.diagonal() * std::max(1.0, at.mean_square()))
+                                  .cwiseMax(disagreement(residual, at, weights, whole))
+                                  .cwiseMax(0.0);
+  return {std::move(covariance), std::move(variances)};
 }
 
 /// Standard errors, correlation and their words.
 void inform(const Residual& residual, const Solution& at, const Eigen::VectorXd& weights,
             const Gram& whole, Fit& fit) {
   const auto n = Eigen::Index(at.values.size());
-  Eigen::MatrixXd covariance(n, n);
-  for (Eigen::Index k = 0; k < n; ++k)
-    covariance.col(k) = solve(whole.a, Eigen::VectorXd::Unit(n, k));
-  const Eigen::VectorXd robust = disagreement(residual, at, weights, covariance);
-  const double inflation = std::max(1.0, at.mean_square());
+  const auto [covariance, variances] = known_of(residual, at, weights, whole);
+  const double folds = double(folds_of(residual).size());
+  const double widened = std::sqrt(1.0 + kValidation.few_clusters / folds);
   fit.correlation = Eigen::MatrixXd::Zero(n, n);
   for (Eigen::Index k = 0; k < n; ++k) {
     const Parameter& p = at.parameters[std::size_t(k)];
     Estimate e{p.pointer, at.values[std::size_t(k)], 0.0, true, false};
     const double own =
         whole.a(k, k) - (std::isfinite(p.prior_sd) ? 1.0 / (p.prior_sd * p.prior_sd) : 0.0);
-    const double sd = std::sqrt(std::max({0.0, covariance(k, k) * inflation, robust(k)}));
+    const double sd = widened * std::sqrt(variances(k));
     e.informed = own > 0.0 && covariance(k, k) > 0.0 &&
                  !(std::sqrt(covariance(k, k)) > kValidation.uninformed * p.prior_sd);
     e.sd = !e.informed     ? std::numeric_limits<double>::infinity()
@@ -225,6 +251,33 @@ Fit report(const Residual& residual, Solution& at, bool held_out) {
   fit.held_out_rmse = std::numeric_limits<double>::quiet_NaN();
   if (held_out) hold_out(residual, at, whole, weights, fit);
   return fit;
+}
+
+bool told_from_zero(const Residual& residual, const Solution& solution) {
+  if (solution.told_from_zero) return *solution.told_from_zero;
+  Solution at = solution;
+  differentiate(residual, at);
+  const Eigen::VectorXd weights = robust_weights(at.residual, at.scale);
+  Gram whole = gram(at, weights, 0, residual.size());
+  add_prior(at, whole);
+  const Eigen::VectorXd variances = known_of(residual, at, weights, whole).variances;
+  const auto candidates = std::ranges::count_if(residual.problem().candidates(), &Candidate::possible);
+  const double least = statistics::student_t_quantile(
+      1.0 - 0.5 * kValidation.found_by_chance / double(std::max<std::ptrdiff_t>(1, candidates)),
+      double(folds_of(residual).size()) - 1.0);
+  const auto told = [&](const std::string& id) {
+    bool any_strength = false;
+    for (std::size_t k = 0; k < at.parameters.size(); ++k) {
+      const Parameter& p = at.parameters[k];
+      if (p.shape || !p.pointer.starts_with(id + "/")) continue;
+      any_strength = true;
+      const double away = p.logarithmic ? 1.0 : std::abs(at.values[k] - p.off);
+      if (away > least * std::sqrt(variances(Eigen::Index(k)))) return true;
+    }
+    return !any_strength;
+  };
+  solution.told_from_zero = std::ranges::all_of(at.structure.effects, told);
+  return *solution.told_from_zero;
 }
 
 double held_out_rmse(const Residual& residual, const Solution& at) {

@@ -13,6 +13,11 @@ Solution fit_base(const Residual& residual, const Structure& structure = {});
 /// What is told of a solution; differentiates it anew.
 Fit report(const Residual& residual, Solution& solution, bool held_out);
 
+/// Is every effect of a structure told from none by a strength on which the trials agree? By Student's t over the trials,
+/// with the chance ValidationSettings::found_by_chance shared by all effects of the catalogue [Dunn1961]. True of an effect
+/// that is free in each trial.
+bool told_from_zero(const Residual& residual, const Solution& solution);
+
 /// The held-out rmse alone, by the jacobian that the solution has.
 double held_out_rmse(const Residual& residual, const Solution& solution);
 

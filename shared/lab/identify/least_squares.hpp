@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 #include <algorithm>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -52,6 +53,7 @@ struct Solution {
                         ///< nothing (dry friction at rest)
 
   mutable Eigen::VectorXd held_out_squares;  ///< see held_out_squares(); empty until asked for
+  mutable std::optional<bool> told_from_zero;  ///< see told_from_zero(); empty until asked for
 
   /// Mean of ρ over what is judged: about 1 when all is explained.
   double mean_square() const { return (loss - prior) / std::max(1.0, judged); }

@@ -97,6 +97,15 @@ bool Selection::admissible(const Solution& at) const {
   return true;
 }
 
+double Selection::least_fall(const Structure& larger, const Structure& smaller) const {
+  const bool free =
+      std::ranges::any_of(residual_.problem().candidates(), [&](const Candidate& candidate) {
+        return candidate.facts.free_per_trial && contains(larger, candidate.facts.id) &&
+               !contains(smaller, candidate.facts.id);
+      });
+  return free ? kSelection.least_fall_of_free : kSelection.least_fall;
+}
+
 std::vector<const Solution*> Selection::best_of(std::size_t effects, std::size_t most) const {
   std::vector<const Solution*> out;
   for (const auto& [key, solution] : tried_)
@@ -259,9 +268,8 @@ void Selection::require_lower_error() {
     for (const std::string& id : chosen().structure.effects) {
       const Structure less = minus(chosen().structure, id);
       part(Solution(chosen()), less);
-      if (with <
-          (1.0 - kSelection.least_fall) * error_on_held_out(residual_, tried_.at(name(less))))
-        continue;
+      const double fall = least_fall(chosen().structure, less);
+      if (with < (1.0 - fall) * error_on_held_out(residual_, tried_.at(name(less)))) continue;
       chosen_ = name(less);
       dropped = true;
       break;
@@ -323,6 +331,8 @@ bool Selection::run(const std::function<void()>& after_singles) {
     for (const std::string& id : pair->structure.effects)
       part(Solution(*pair), minus(pair->structure, id));
   refine(1);
+  for (const Solution* single : best_of(1, kSelection.refined))
+    if (!told_from_zero(residual_, *single)) part(Solution(*single), {});
   choose();
   refuse_trends();
   require_lower_error();

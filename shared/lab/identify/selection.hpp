@@ -39,6 +39,8 @@ class Selection {
   const std::string& refused() const { return refused_; }
   /// Does the larger bring the residual so much nearer to the floor than the smaller that it is worth growing further?
   bool clearly_better(const Solution& larger, const Solution& smaller) const;
+  /// Share by which the larger must lower the error on held-out trials, without weights, below that of the smaller.
+  double least_fall(const Structure& larger, const Structure& smaller) const;
   /// Every effect's numbers stand to each other as its law means them.
   bool admissible(const Solution& at) const;
 

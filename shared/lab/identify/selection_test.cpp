@@ -177,6 +177,27 @@ TEST(Diagnose, TwoEffectsAreBothNamedAndOnlyThey) {
   EXPECT_EQ(ids(*d), (Ids{"cube", "sign"}));
 }
 
+TEST(Diagnose, AnEffectOnWhichTheTrialsDisagreeIsNotNamed) {
+  // Sizes 0.6, 0, 0.6, 0 …: with their mean the error is half as large, but it is only 2.6 of its standard errors,
+  // 0.6/√28, from 0. The 5 possible effects share a chance of 5 %: Student's t with 7 degrees of freedom asks for 3.5.
+  const Toy toy([](int t, int k) { return t % 2 == 0 ? 0.6 * std::pow(u_of(t, k), 3) : 0.0; });
+  const auto d = diagnose(toy);
+  ASSERT_TRUE(d) << d.error().what;
+  EXPECT_EQ(d->verdict, Verdict::unexplained);
+  EXPECT_EQ(ids(*d), Ids{});
+}
+
+TEST(Fit, StandardErrorsCountWhatTheSamplesOfATrialHaveInCommon) {
+  // A constant of each trial's own: the common one is known as the mean of 8 numbers is, s/√8, widened by √(1 + 3/8) for
+  // so few. By independent samples it would be known to 0.05/√3200 = 0.0009.
+  const std::vector<double> own{0.3, -0.1, 0.2, 0.4, -0.3, -0.2, 0.1, -0.4};
+  const Toy toy([&](int t, int) { return own[std::size_t(t)]; });
+  const auto found = fit(toy, {});
+  ASSERT_TRUE(found) << found.error().what;
+  const double s = std::sqrt(0.6 / 7.0);  // Σ own² = 0.6, their mean is 0
+  EXPECT_NEAR(found->estimates[0].sd, s / std::sqrt(8.0) * std::sqrt(1.0 + 3.0 / 8.0), 0.02);
+}
+
 /// A fit of the base, as a diagnosis begins.
 Solution base_of(const Residual& residual) {
   std::vector<double> start;

@@ -66,7 +66,7 @@ bool StructurePosterior::simpler(const Structure& one, const Structure& other) c
 }
 
 /// A structure that does not lower the unweighted held-out error of the primary channel below that of a simpler one by a
-/// material share is none.
+/// material share is none, nor is one with an effect that the trials do not tell from none.
 void StructurePosterior::leave_out_immaterial(const Residual& residual,
                                               const Selection& selection) {
   const auto error = [&](Entry& entry) {
@@ -76,10 +76,11 @@ void StructurePosterior::leave_out_immaterial(const Residual& residual,
   };
   const auto immaterial = [&](Entry& whole) {
     if (whole.structure == chosen_ || whole.probability < kPosterior.least_asked) return false;
+    if (!told_from_zero(residual, selection.tried().at(name(whole.structure)))) return true;
     return std::ranges::any_of(entries_, [&](Entry& part) {
       return (part.structure.effects.size() < whole.structure.effects.size() ||
               simpler(part.structure, whole.structure)) &&
-             error(whole) > (1.0 - kSettings.selection.least_fall) * error(part);
+             error(whole) > (1.0 - selection.least_fall(whole.structure, part.structure)) * error(part);
     });
   };
   for (;;) {

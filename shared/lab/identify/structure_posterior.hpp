@@ -16,7 +16,8 @@ namespace tractus::lab {
 /// −n/2 ln S summed over the trials, S what is left there (the geometric mean of the fit's weighted loss and of the primary
 /// channel's mean square without weights), n the independent observations that a trial is worth, less the
 /// logarithm of the number of structures of that size; averaged over Bayesian bootstraps of the trials [Yao2018,
-/// pseudo-BMA+]. A structure has no probability if a simpler one leaves as much but for a share that is not material.
+/// pseudo-BMA+]. A structure has no probability if a simpler one leaves as much but for a share that is not material, or if
+/// the trials do not tell an effect of it from none.
 class StructurePosterior {
  public:
   StructurePosterior(const Residual& residual, const Selection& selection, const Solution& chosen);
