@@ -439,7 +439,7 @@ end
         self.assertEqual(lines[:3], ["1", "N·s/m 60 parameter", "1"])
         for line, words in zip(lines[3:], ("none.fmu: no such file", "the column t_s", "motion.depth: the model has no such input", "3 rows where t_s has 2",
                                            "v_m_s: nan", "a step of -1 s|stop after the start", "mass: the model has no such parameter",
-                                           "rotary.detent_Nm: -1 where a number"), strict=True):
+                                           "rotary/detent_Nm: -1 is outside"), strict=True):
             self.assertRegex(line, words)
 
 
