@@ -23,7 +23,7 @@ tractus_install(server tractus-server)
 tractus_install(station tractus-station tractus-rig)
 tractus_install(tools tractus)
 if(TARGET tractus_model)
-  install(TARGETS tractus_model LIBRARY DESTINATION lib/tractus COMPONENT tools)  # beside bin, where `tractus fmu` looks
+  install(TARGETS tractus_model tractus_model_formulas LIBRARY DESTINATION lib/tractus COMPONENT tools)  # beside bin, where `tractus fmu` looks
   install(FILES ${CMAKE_BINARY_DIR}/lib/tractus/licences.txt DESTINATION lib/tractus COMPONENT tools)
 endif()
 foreach(component server station tools web)

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "core/file.hpp"
 #include "core/try.hpp"
 #include "effects/expression.hpp"
@@ -19,24 +21,18 @@ using core::Result;
 
 constexpr std::uint64_t kMostBytes = 1ull << 30;
 
-Result<void> check(const models::ProbingModel& model) {
-  for (const effects::EffectInstance& use : model.effects)
-    if (effects::is_expression(use.id))
-      return Error{Errc::bad_input,
-                   fmt::format("{}: a formula of one's own cannot be exported, since its "
-                               "interpreter (muParser) is no "
-                               "part of an FMU; remove the effect or use tractus replay",
-                               use.id)};
-  return {};
-}
-
 }  // namespace
 
-Result<fs::path> runtime_path() {
+bool has_formula(const models::ProbingModel& model) {
+  return std::ranges::any_of(model.effects,
+                             [](const auto& use) { return effects::is_expression(use.id); });
+}
+
+Result<fs::path> runtime_path(const models::ProbingModel& model) {
   std::error_code failure;
   const auto own = fs::read_symlink("/proc/self/exe", failure);
-  const auto path =
-      (own.parent_path().parent_path() / "lib/tractus" / kModelIdentifier).concat(".so");
+  const auto path = own.parent_path().parent_path() / "lib/tractus" /
+                    fmt::format("{}{}.so", kModelIdentifier, has_formula(model) ? "_formulas" : "");
   if (failure || !fs::exists(path, failure))
     return Error{Errc::not_found,
                  fmt::format("{}: not found; it is installed with this program", path.string())};
@@ -45,7 +41,6 @@ Result<fs::path> runtime_path() {
 
 Result<void> write_fmu(const models::ProbingModel& model, const fs::path& runtime,
                        const fs::path& out, std::string_view version) {
-  TRY(check(model));
   TRY(core::may_be_written(out));
   const std::string carried = carried_text(model);
   const auto scratch = TRY(core::ScratchFolder::make(out));

@@ -2,9 +2,12 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
+#include <algorithm>
+#include <cctype>
 
 #include "core/bytes.hpp"
+#include "core/json.hpp"
+#include "core/require.hpp"
 #include "core/try.hpp"
 #include "effects/probing_effect.hpp"
 

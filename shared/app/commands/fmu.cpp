@@ -28,12 +28,16 @@ Outcome run_fmu(const FmuOptions& options) {
         fmt::format("{}: a model of the palpation rig needs its volume and runs in no FMU; "
                     "tractus replay gives its forces for a recorded motion",
                     options.model.string())};
-  const auto runtime = TRY(fmu::runtime_path());
+  const auto runtime = TRY(fmu::runtime_path(*probing));
   auto written = fmu::write_fmu(*probing, runtime, options.out, TRACTUS_VERSION);
   if (!written)
     return Error{written.error().code,
                  fmt::format("{}: {}", options.model.string(), written.error().what)};
   fmt::print("Written to {}\n", options.out.string());
+  if (fmu::has_formula(*probing))
+    fmt::print(
+        "It has a formula: where it runs, the library muParser is needed (libmuparser.so.2, "
+        "Debian's libmuparser2v5).\n");
   return 0;
 }
 

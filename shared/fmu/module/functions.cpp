@@ -2,6 +2,10 @@
 /// thrown leaves them.
 #include <fmt/format.h>
 
+#include <memory>
+#include <optional>
+
+#include "core/try.hpp"
 #include "fmu/module/fmi2.hpp"
 #include "fmu/module/instance.hpp"
 

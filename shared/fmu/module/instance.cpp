@@ -9,6 +9,8 @@
 #include "core/file.hpp"
 #include "core/json.hpp"
 #include "core/try.hpp"
+#include "effects/probing_effect.hpp"
+#include "fmu/module/file_uri.hpp"
 
 namespace tractus {
 namespace fmu {
@@ -22,28 +24,6 @@ using core::Result;
 constexpr double kTravel_m = 1.0;  // the motion says how far it goes, as in a replay
 constexpr double kOfAStep = 1e-6;  // rounding between two importers' ways to add up time
 constexpr std::uint64_t kMostBytes = 64ull << 20;
-
-/// The path of a file URI [RFC 8089]; a path is taken as it is.
-Result<fs::path> path_of(std::string_view uri) {
-  std::string_view rest = uri;
-  if (rest.starts_with("file:")) {
-    rest.remove_prefix(5);
-    if (rest.starts_with("//")) rest.remove_prefix(std::min(rest.find('/', 2), rest.size()));
-  }
-  if (!rest.starts_with('/'))
-    return Error{Errc::bad_input,
-                 fmt::format("resourceLocation '{}': a file URI is expected, as file:///folder",
-                             uri.substr(0, 200))};
-  std::string path;
-  for (std::size_t k = 0; k < rest.size(); ++k) {
-    const auto digits = rest.substr(k + 1, 2);
-    const bool code = rest[k] == '%' && digits.size() == 2 &&
-                      std::ranges::all_of(digits, [](unsigned char c) { return std::isxdigit(c); });
-    path += code ? char(std::stoi(std::string(digits), nullptr, 16)) : rest[k];
-    if (code) k += 2;
-  }
-  return fs::path(path);
-}
 
 Result<models::ProbingModel> read_carried(std::string_view guid_given, std::string_view resources) {
   const fs::path path = TRY(path_of(resources)) / "model.json";

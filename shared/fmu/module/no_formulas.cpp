@@ -1,4 +1,4 @@
-/// In place of effects/formula_program.cpp: muParser is no part of an FMU, and `write_fmu` exports no formula.
+/// In place of effects/formula_program.cpp, for models without formulas: so their FMUs need no muParser.
 #include "effects/formula.hpp"
 
 namespace tractus {
@@ -14,7 +14,7 @@ FormulaProgram::~FormulaProgram() = default;
 core::Result<FormulaProgram> FormulaProgram::make(const std::string& formula,
                                                   std::span<const Quantity>,
                                                   std::span<const MemoryCall>) {
-  return core::bad_input("`" + formula + "`: an FMU computes no formulas");
+  return core::bad_input("`" + formula + "`: this FMU computes no formulas");
 }
 std::span<double> FormulaProgram::inputs() const noexcept { return {}; }
 bool FormulaProgram::remembers() const noexcept { return false; }
