@@ -78,12 +78,12 @@ Json summary_of(const Work& work, const models::ProbingModel& model) {
 
 Result<void> write(const Work& work, const models::ProbingModel& model, const fs::path& to) {
   auto scratch = TRY(core::ScratchFolder::make(to));
-  const fs::path trials = scratch.path() / "trials";
+  const fs::path trials = scratch.path() / "trials", motion = scratch.path() / "motion";
   std::error_code failure;
-  fs::create_directory(trials, failure);
-  if (failure)
-    return core::Error{core::Errc::io,
-                       fmt::format("{}: cannot create: {}", trials.string(), failure.message())};
+  for (const fs::path& folder : {trials, motion})
+    if (fs::create_directory(folder, failure); failure)
+      return core::Error{core::Errc::io,
+                         fmt::format("{}: cannot create: {}", folder.string(), failure.message())};
   for (std::size_t k = 0; k < work.set.trials.size(); ++k) {
     const auto& recording = work.set.trials[k];
     auto figure = replay::trial_figure(recording, work.replayed[k]);
@@ -91,6 +91,8 @@ Result<void> write(const Work& work, const models::ProbingModel& model, const fs
     for (const auto& [suffix, text] : {std::pair{".csv", replay::csv(recording, work.replayed[k])},
                                        std::pair{".svg", plot::svg(figure)}})
       TRY(core::write_file(trials / (recording.id + suffix), core::bytes_of(text)));
+    TRY(core::write_file(motion / (recording.id + ".csv"),
+                         core::bytes_of(replay::motion_csv(work.replayed[k].motion))));
   }
   if (auto done =
           core::write_file(scratch.path() / "table.csv", core::bytes_of(replay::csv(work.rows)));

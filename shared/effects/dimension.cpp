@@ -93,6 +93,15 @@ core::Result<Dimension> Dimension::parse(std::string_view unit) {
   return out;
 }
 
+std::optional<std::array<int, 3>> Dimension::whole_powers() const noexcept {
+  std::array<int, 3> out{};
+  for (std::size_t k = 0; k < out.size(); ++k) {
+    if (sixtieths_[k] % kOne != 0) return std::nullopt;
+    out[k] = sixtieths_[k] / kOne;
+  }
+  return out;
+}
+
 Dimension Dimension::operator*(const Dimension& other) const noexcept {
   return {sixtieths_[0] + other.sixtieths_[0], sixtieths_[1] + other.sixtieths_[1],
           sixtieths_[2] + other.sixtieths_[2]};

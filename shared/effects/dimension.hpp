@@ -20,6 +20,8 @@ class Dimension {
   static core::Result<Dimension> parse(std::string_view unit);
 
   bool plain() const noexcept { return *this == Dimension(); }  ///< of a number without unit
+  /// Powers of metre, kilogram and second; nothing where one is a fraction.
+  std::optional<std::array<int, 3>> whole_powers() const noexcept;
   /// As "N*s/m", "1" for none; by N, but for kg alone.
   std::string text() const;
 

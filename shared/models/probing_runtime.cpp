@@ -120,12 +120,14 @@ core::Result<ProbingRuntime> ProbingRuntime::make(laws::ProbingParameters parame
     return core::Error{
         core::Errc::too_large,
         fmt::format("{} effects where at most {} are expected", uses.size(), kMaxProbingEffects)};
-  ProbingStages stages;
+  ProbingRuntime out(std::move(law), {});
   for (const effects::EffectInstance& use : uses) {
     auto effect = TRY(effects::make_probing_effect(use));
-    stages.add(std::move(effect));
+    out.stages_.add(std::move(effect));
+    const auto* known = effects::find_probing_effect(use.id);
+    if (known && known->facts.is_delay) out.delay_s_ += use.values[0];
   }
-  return ProbingRuntime(std::move(law), std::move(stages));
+  return out;
 }
 
 void ProbingRuntime::predict_force(const ProbingMotion& motion, std::span<double> fz_N) const {

@@ -99,8 +99,11 @@ class ProbingRuntime {
   static constexpr double kSoft_rad_s = 0.05;
 
   const laws::ProbingLaw& law() const noexcept { return law_; }
+  /// How much later than the motion a force is recorded, s.
+  double delay_s() const noexcept { return delay_s_; }
 
  private:
+  friend class ProbingStream;
   ProbingRuntime(laws::ProbingLaw law, ProbingStages stages);
   void predict_force(const ProbingMotion& motion, std::span<double> fz_N) const;
   void predict_torque(const ProbingMotion& motion, std::span<double> tz_Nm) const;
@@ -108,6 +111,7 @@ class ProbingRuntime {
 
   laws::ProbingLaw law_;
   ProbingStages stages_;
+  double delay_s_ = 0.0;
 };
 
 }  // namespace tractus::models

@@ -57,6 +57,10 @@ core::Json to_json(const ProbingRow& row);
 /// measured, the speed used, and the live depth.
 std::string csv(const trial::ProbingMeasurement& recording, const ProbingReplayed& replayed);
 
+/// The smoothed motion that the forces follow from, as an FMU of the model takes it
+/// (fmu/variables.hpp).
+std::string motion_csv(const models::ProbingMotion& motion);
+
 /// Push with depth, error, torque, depth as driven by the recorded push, and push against depth.
 plot::Figure trial_figure(const trial::ProbingMeasurement& recording,
                           const ProbingReplayed& replayed);

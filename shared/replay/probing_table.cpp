@@ -127,27 +127,20 @@ core::Json to_json(const ProbingRow& row) {
           {"r2", number(row.r2)}};
 }
 
-std::string csv(const trial::ProbingMeasurement& recording, const ProbingReplayed& replayed) {
-  struct Column {
-    const char* name;
-    const std::vector<double>* values;
-  };
-  const std::vector<Column> all{
-      {"t_s", &recording.t_s},
-      {"x_m", &recording.x_m},
-      {"theta_rad", &recording.theta_rad},
-      {"fz_N", &replayed.forces.fz_N},
-      {"tz_Nm", &replayed.forces.tz_Nm},
-      {"measured_fz_N", &recording.fz_N},
-      {"measured_tz_Nm", &recording.tz_Nm},
-      {"speed_m_s", recording.x_m.empty() ? &recording.x_m : &replayed.motion.v_m_s},
-      {"turning_rad_s", &replayed.motion.omega_rad_s},
-      {"live_x_m", &replayed.live_x_m}};
+namespace {
+
+struct Column {
+  const char* name;
+  const std::vector<double>* values;
+};
+
+/// Columns without values are left out.
+std::string csv(const std::vector<Column>& all, std::size_t rows) {
   std::string out;
   for (const Column& column : all)
     if (!column.values->empty()) out += (out.empty() ? "" : ",") + std::string(column.name);
   out += "\n";
-  for (std::size_t k = 0; k < recording.t_s.size(); ++k) {
+  for (std::size_t k = 0; k < rows; ++k) {
     bool first = true;
     for (const Column& column : all) {
       if (column.values->empty()) continue;
@@ -158,6 +151,37 @@ std::string csv(const trial::ProbingMeasurement& recording, const ProbingReplaye
     out += "\n";
   }
   return out;
+}
+
+}  // namespace
+
+std::string csv(const trial::ProbingMeasurement& recording, const ProbingReplayed& replayed) {
+  return csv({{"t_s", &recording.t_s},
+              {"x_m", &recording.x_m},
+              {"theta_rad", &recording.theta_rad},
+              {"fz_N", &replayed.forces.fz_N},
+              {"tz_Nm", &replayed.forces.tz_Nm},
+              {"measured_fz_N", &recording.fz_N},
+              {"measured_tz_Nm", &recording.tz_Nm},
+              {"speed_m_s", recording.x_m.empty() ? &recording.x_m : &replayed.motion.v_m_s},
+              {"turning_rad_s", &replayed.motion.omega_rad_s},
+              {"live_x_m", &replayed.live_x_m}},
+             recording.t_s.size());
+}
+
+std::string motion_csv(const models::ProbingMotion& motion) {
+  const std::vector<double> rest_m_s(motion.size(), motion.rest_m_s),
+      rest_rad_s(motion.size(), motion.rest_rad_s);
+  return csv({{"t_s", &motion.t_s},
+              {"x_m", &motion.x_m},
+              {"v_m_s", &motion.v_m_s},
+              {"a_m_s2", &motion.a_m_s2},
+              {"theta_rad", &motion.theta_rad},
+              {"omega_rad_s", &motion.omega_rad_s},
+              {"recorded_tz_Nm", &motion.tz_Nm},
+              {"rest_m_s", &rest_m_s},
+              {"rest_rad_s", &rest_rad_s}},
+             motion.size());
 }
 
 }  // namespace replay

@@ -39,6 +39,10 @@ const std::map<std::string, Names> kAllowed = {
      {"shared/core", "shared/math", "shared/volume", "shared/volume/io", "shared/laws",
       "shared/effects", "shared/models", "shared/trial", "shared/statistics", "shared/plot",
       "shared/lab"}},
+    // A model for other tools: described and zipped here, run by the shared object of module/.
+    {"shared/fmu",
+     {"shared/core", "shared/math", "shared/volume", "shared/laws", "shared/effects",
+      "shared/models", "shared/plot", "shared/lab/io"}},
     // A scenario is the probing law's numbers as an expert tunes them; its bone is a model's.
     {"shared/scenarios",
      {"shared/core", "shared/math", "shared/volume", "shared/laws", "shared/effects",

@@ -27,7 +27,7 @@ DECLARED = [
     re.compile(r"\bconstexpr\s+[\w:<>]+\s+k([A-Z]\w+)"),
 ]
 # Names of libraries and of the operating system, which are theirs to choose.
-FOREIGN = re.compile(r"^(?:curl_|sqlite3_|crypto_|posix_|pthread_|archive_|libusb_|clock_|gmtime|sig(?:empty|add|wait)|randombytes|"
+FOREIGN = re.compile(r"^(?:curl_|fmi2[A-Z]|sqlite3_|crypto_|posix_|pthread_|archive_|libusb_|clock_|gmtime|sig(?:empty|add|wait)|randombytes|"
                      r"async_|gl[A-Z]|vtk|GlewError|namespace$|alignas$|tuple$|llt$|ldlt$|svd$|noexcept$|mmap$|madvise$)")
 
 

@@ -17,10 +17,10 @@
 #include "db/store/trials/debriefs.hpp"
 #include "db/store/trials/ratings.hpp"
 #include "db/store/trials/trials.hpp"
+#include "lab/io/zip_file.hpp"
 #include "metrics/metric.hpp"
 #include "server/api/people/people_json.hpp"
 #include "server/api/trials/trial_json.hpp"
-#include "server/api/zip_file.hpp"
 
 namespace tractus {
 namespace api {
@@ -292,7 +292,7 @@ std::string read_me(const store::Account& person, const OwnData& data, std::size
   return out;
 }
 
-Result<void> add_recordings(ZipFile& zip, const Backend& backend, const OwnData& data,
+Result<void> add_recordings(lab_io::ZipFile& zip, const Backend& backend, const OwnData& data,
                             const Part& part) {
   for (std::size_t i = part.first; i < part.end; ++i) {
     const store::TrialRecord& record = data.trials[i].record;
@@ -315,7 +315,7 @@ Result<std::shared_ptr<http::ScratchFile>> own_data_zip(Backend& backend, const 
   const Part& chosen = parts[static_cast<std::size_t>(part) - 1];
   const std::uint64_t most_bytes = chosen.bytes + chosen.bytes / 64 + kTables_bytes;
   auto file = TRY(http::scratch_file(*backend.scratch, client, most_bytes));
-  ZipFile zip(file->path, most_bytes);
+  lab_io::ZipFile zip(file->path, most_bytes);
   TRY(zip.add("README.txt", read_me(person, data, static_cast<std::size_t>(part), parts.size(),
                                     backend.now_utc_us())));
   if (part == 1) {

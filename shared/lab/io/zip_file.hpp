@@ -7,7 +7,7 @@
 
 #include "core/result.hpp"
 
-namespace tractus::api {
+namespace tractus::lab_io {
 
 class ZipFile {
  public:
@@ -29,4 +29,4 @@ class ZipFile {
   std::unique_ptr<Parts> parts_;
 };
 
-}  // namespace tractus::api
+}  // namespace tractus::lab_io

@@ -1,4 +1,4 @@
-#include "server/api/zip_file.hpp"
+#include "lab/io/zip_file.hpp"
 
 #include <archive.h>
 #include <archive_entry.h>
@@ -7,7 +7,7 @@
 #include <fstream>
 
 namespace tractus {
-namespace api {
+namespace lab_io {
 namespace {
 
 constexpr std::streamsize kZipPiece_bytes = 256 << 10;
@@ -22,7 +22,7 @@ struct ZipOutput {
   std::uint64_t size = 0;
 };
 
-la_ssize_t append(archive*, void* into, const void* bytes, size_t size) {
+la_ssize_t append_to_file(archive*, void* into, const void* bytes, size_t size) {
   auto& out = *static_cast<ZipOutput*>(into);
   out.size += size;
   if (out.size > out.most_bytes) return -1;
@@ -57,7 +57,7 @@ ZipFile::ZipFile(const std::filesystem::path& path, std::uint64_t most_bytes)
   parts_->writer.reset(archive_write_new());
   archive_write_set_format_zip(parts_->writer.get());
   archive_write_set_bytes_in_last_block(parts_->writer.get(), 1);
-  archive_write_open(parts_->writer.get(), &parts_->out, nullptr, append, nullptr);
+  archive_write_open(parts_->writer.get(), &parts_->out, nullptr, append_to_file, nullptr);
 }
 
 ZipFile::~ZipFile() = default;
@@ -93,5 +93,5 @@ core::Error ZipFile::failure() const {
           fmt::format("the zip is larger than {} MiB", parts_->out.most_bytes >> 20)};
 }
 
-}  // namespace api
+}  // namespace lab_io
 }  // namespace tractus
