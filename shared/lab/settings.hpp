@@ -462,7 +462,7 @@ struct Settings {
                                          .observations_per_trial = 12.0,
                                          .drift_r2_on_motion = 0.45,
                                          .more = {-3.4, 5.9, 6.6}};
-  SelectionThresholds torque_thresholds = probing_thresholds.with({-2.4, 3.8, 6.6});
+  SelectionThresholds torque_thresholds = probing_thresholds.with({-5.5, 3.8, 6.6});
   SelectionThresholds palpation_thresholds{.stop_below = 0.9,
                                            .stop_if_given_below = 1.1,
                                            .least_gain_share = 0.01,

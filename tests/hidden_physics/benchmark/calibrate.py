@@ -33,8 +33,7 @@ def channel_answers(answer: dict) -> list:
 def row_of(truth: dict, channel: str, part: dict, catalogue: dict) -> dict:
     """Features and label of one part of an answer."""
     rig = truth["rig"]
-    turning = {name for name, effect in catalogue.items() if effect.get("channel") == "torque"}
-    named = {e["id"] for e in part["effects"] if rig == "palpation" or (e["id"] in turning) == (channel == "tz_Nm")}
+    named = {e["id"] for e in part["effects"]}
     lacking = [h for h in truth["hidden"]
                if (rig == "palpation" or (h.get("channel") == "tz_Nm") == (channel == "tz_Nm"))
                and scoring.gain(truth, h) >= scoring.MATERIAL and scoring.known_as(h["id"], catalogue) not in named]

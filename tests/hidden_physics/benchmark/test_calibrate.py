@@ -9,7 +9,7 @@ import numpy as np
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 import calibrate  # noqa: E402
 
-CATALOGUE = {"coulomb_friction": {"channel": "force"}, "rotary_bias": {"channel": "torque"}}
+CATALOGUE = {"coulomb_friction": {}, "rotary_bias": {}}  # as `tractus effects` has it: without a channel
 
 
 def hidden(name, share, channel="fz_N"):
@@ -47,6 +47,7 @@ class Rows(unittest.TestCase):
         about_axis = self.row(truth, channel="tz_Nm")
         self.assertTrue(about_axis["more"])
         self.assertEqual(about_axis["channel"], "torque")
+        self.assertFalse(self.row(truth, ["rotary_bias"], channel="tz_Nm")["more"])
 
     def test_the_error_counts_from_the_floor_on(self):
         self.assertAlmostEqual(self.row(truth_of(), error=0.2)["above"], math.log(2.0))
