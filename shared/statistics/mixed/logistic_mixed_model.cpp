@@ -13,8 +13,9 @@ namespace tractus {
 namespace statistics {
 namespace {
 
-constexpr double kStep = 0.01;      // of differences; about that many standard errors
-constexpr double kMostLogit = 1e3;  // a standard deviation beyond it is a variance that runs away
+constexpr double kStep = 0.01;  // of differences; about that many standard errors
+// A standard deviation beyond it is a variance that runs away; so is a lesser one without a minimum.
+constexpr double kMostLogit = 1e3, kMostUnsettled = 10.0;
 
 /// The deviance in coordinates of about one standard error each: θ = spread · x of θ,
 /// β = β₀ + R · x of β.
@@ -128,8 +129,9 @@ core::Result<LogisticMixedModel> logistic_mixed_model(const Design& design, cons
   const Minimum at = least(problem, value, gradient);
   const Matrix covariance = problem.covariance(hessian_of_gradient(gradient, at.x, kStep));
   if (stopped) return core::Error{core::Errc::cancelled, "stopped"};
-  if (ran_away || !std::isfinite(at.value) || !covariance.allFinite()) return no_maximum();
   const Vector theta = problem.theta(at.x), beta = problem.beta(at.x);
+  ran_away = ran_away || (!at.converged && theta.cwiseAbs().maxCoeff() > kMostUnsettled);
+  if (ran_away || !std::isfinite(at.value) || !covariance.allFinite()) return no_maximum();
   const auto scale = deviance.squares().column_scale().cwiseInverse();
   LogisticMixedModel out;
   out.names = design.names;

@@ -28,7 +28,7 @@ const std::map<std::string, std::vector<Term>> kLogisticTerms = {
     {"verbal_aggression", {{{"surgeon"}}, {{"scenario"}}}}};
 
 /// One fit of the reference: its data as the model takes them.
-struct Case {
+struct LogisticCase {
   std::string name;
   core::Json want;
   Counts counts;
@@ -36,12 +36,12 @@ struct Case {
   std::vector<RandomTerm> terms;
 };
 
-std::vector<Case> cases() {
-  std::vector<Case> out;
+std::vector<LogisticCase> logistic_cases() {
+  std::vector<LogisticCase> out;
   const auto reference = golden::expected("logistic_random_terms");
   for (const auto& [name, want] : reference["fits"].items()) {
     const golden::Csv csv(want["data"]);
-    Case of{name, want, {csv.numbers("y"), csv.numbers("m")}, {}, {}};
+    LogisticCase of{name, want, {csv.numbers("y"), csv.numbers("m")}, {}, {}};
     of.design = golden::design_of(csv, want["formula"], of.counts.trials.size());
     for (const Term& term : kLogisticTerms.at(name))
       of.terms.push_back(golden::random_term(csv, term));
@@ -52,7 +52,7 @@ std::vector<Case> cases() {
 }
 
 /// θ in units of the scaled columns, from triangles by the keys of lme4's answer.
-Vector theta_of(const core::Json& lambda, const Case& of, const LaplaceDeviance& deviance) {
+Vector theta_of(const core::Json& lambda, const LogisticCase& of, const LaplaceDeviance& deviance) {
   std::vector<RandomPart> parts(of.terms.size());
   for (std::size_t t = 0; t < parts.size(); ++t) parts[t].group = of.terms[t].group;
   Vector out(deviance.squares().start().size());
@@ -68,7 +68,7 @@ Vector theta_of(const core::Json& lambda, const Case& of, const LaplaceDeviance&
 
 TEST(LogisticMixedModelTest, HasTheDevianceOfLme4AtGivenParameters) {
   int compared = 0;
-  for (const Case& of : cases()) {
+  for (const LogisticCase& of : logistic_cases()) {
     LaplaceDeviance deviance(of.design.columns, of.counts, of.terms);
     for (const auto& point : of.want["points"]) {
       const Vector beta = deviance.squares().column_scale().cwiseProduct(
@@ -82,7 +82,7 @@ TEST(LogisticMixedModelTest, HasTheDevianceOfLme4AtGivenParameters) {
 }
 
 TEST(LogisticMixedModelTest, HasTheGradientOfItsDeviance) {
-  for (const Case& of : cases()) {
+  for (const LogisticCase& of : logistic_cases()) {
     if (of.name == "verbal_aggression") continue;  // nothing new, and slow by differences
     LaplaceDeviance deviance(of.design.columns, of.counts, of.terms);
     const auto& point = of.want["points"][0];
@@ -105,7 +105,7 @@ TEST(LogisticMixedModelTest, HasTheGradientOfItsDeviance) {
 }
 
 TEST(LogisticMixedModelTest, AgreesWithLme4ToSixDigits) {
-  for (const Case& of : cases()) {
+  for (const LogisticCase& of : logistic_cases()) {
     const auto fit = logistic_mixed_model(of.design, of.counts, of.terms);
     ASSERT_TRUE(fit) << of.name << ": " << fit.error().what;
     EXPECT_TRUE(fit->converged) << of.name;
@@ -176,6 +176,12 @@ TEST(LogisticMixedModelTest, RefusesWhatHasNoMaximum) {
   ASSERT_FALSE(one_level);
   EXPECT_EQ(one_level.error().what,
             "a: one level: the spread between its levels cannot be estimated");
+  Vector by_level(8);
+  by_level << 0, 0, 0, 0, 1, 1, 1, 1;
+  const auto separated =
+      logistic_mixed_model(mean, {by_level, Vector::Ones(8)}, {{"a", labels, ones, {"1"}}});
+  ASSERT_FALSE(separated);
+  EXPECT_NE(separated.error().what.find("no maximum"), std::string::npos);
   std::vector<std::string> each;
   for (int i = 0; i < 8; ++i) each.push_back(std::to_string(i));
   const auto row_each = logistic_mixed_model(mean, counts, {{"a", each, ones, {"1"}}});
@@ -184,7 +190,7 @@ TEST(LogisticMixedModelTest, RefusesWhatHasNoMaximum) {
 }
 
 TEST(LogisticMixedModelTest, IsStoppedWhenAsked) {
-  const Case of = cases().front();
+  const LogisticCase of = logistic_cases().front();
   const auto fit =
       logistic_mixed_model(of.design, of.counts, of.terms, [](double) { return false; });
   ASSERT_FALSE(fit);
