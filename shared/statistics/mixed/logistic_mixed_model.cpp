@@ -13,7 +13,7 @@ namespace tractus {
 namespace statistics {
 namespace {
 
-constexpr double kStep = 0.01;  // of differences; about that many standard errors
+constexpr double kDifferenceStep = 0.01;  // of differences; about that many standard errors
 // A standard deviation beyond it is a variance that runs away; so is a lesser one without a minimum.
 constexpr double kMostLogit = 1e3, kMostUnsettled = 10.0;
 
@@ -62,14 +62,14 @@ class ScaledDeviance {
 
 /// A variance at 0 may be a local minimum: θ is tried at some sizes there.
 Minimum least(const ScaledDeviance& problem, const ScalarField& f, const VectorField& gradient) {
-  Minimum best = minimise(f, gradient, problem.start(), kStep);
+  Minimum best = minimise(f, gradient, problem.start(), kDifferenceStep);
   for (Eigen::Index i = 0; i < problem.spread().size(); ++i) {
     if (std::abs(best.x[i] * problem.spread()[i]) > 1e-3) continue;
     for (const double size : {0.03, 0.3}) {
       Vector from = best.x;
       from[i] = size / problem.spread()[i];
       if (f(from) < best.value - 1e-8) {
-        const Minimum again = minimise(f, gradient, from, kStep);
+        const Minimum again = minimise(f, gradient, from, kDifferenceStep);
         if (again.value < best.value) best = again;
       }
     }
@@ -127,7 +127,8 @@ core::Result<LogisticMixedModel> logistic_mixed_model(const Design& design, cons
     return go_on(x) ? problem.gradient(x) : Vector::Zero(x.size());
   };
   const Minimum at = least(problem, value, gradient);
-  const Matrix covariance = problem.covariance(hessian_of_gradient(gradient, at.x, kStep));
+  const Matrix covariance =
+      problem.covariance(hessian_of_gradient(gradient, at.x, kDifferenceStep));
   if (stopped) return core::Error{core::Errc::cancelled, "stopped"};
   const Vector theta = problem.theta(at.x), beta = problem.beta(at.x);
   ran_away = ran_away || (!at.converged && theta.cwiseAbs().maxCoeff() > kMostUnsettled);
