@@ -5,7 +5,8 @@
 ///     term: variable · a:b (interaction) · a*b (a + b + a:b) · 1 · 0 (no intercept) ·
 ///           (1|column), a random intercept per group ·
 ///           (1 + x | a), (0 + x | a), (1 | a:b), (1 | a/b) = (1 | a) + (1 | a:b), several of them:
-///           random terms as lme4 writes them, of numeric columns x, for 'lmm'
+///           random terms as lme4 writes them, of numeric columns x, for 'lmm' and
+///           'logistic'
 ///     variable: a column (text columns become factors) · C(column) or factor(column) ·
 ///           I(column^2) … I(column^9) · log(column) · `a name with blanks`
 #pragma once
@@ -56,7 +57,7 @@ struct Formula {
   std::vector<Term> terms;   ///< main effects before their interactions
   bool intercept = true;
   std::string group;  ///< of (1|group) where that is the one random term, else empty
-  std::vector<RandomEffects> random;  ///< where it is not: all random terms, for 'lmm' alone
+  std::vector<RandomEffects> random;  ///< where it is not: all random terms
 
   /// Every column it names, each once.
   std::vector<std::string> columns() const;

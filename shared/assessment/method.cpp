@@ -71,8 +71,8 @@ core::Result<Findings> run(const Method& method, const Table& table, const std::
   const auto parsed = TRY(parse_formula(formula));
   if (!parsed.random.empty() && !method.random_terms)
     return core::bad_input(
-        fmt::format("'{}' knows no random terms but one (1|column): 'lmm' takes slopes, crossed "
-                    "and nested ones",
+        fmt::format("'{}' knows no random terms but one (1|column): 'lmm' and 'logistic' take "
+                    "slopes, crossed and nested ones",
                     method.id));
   const auto completed = TRY(complete(method, options));
   const auto selected = TRY(table.selected(parsed.columns(), missing));

@@ -5,6 +5,7 @@
 #include <map>
 
 #include "assessment/pictures.hpp"
+#include "assessment/random_terms.hpp"
 #include "assessment/report.hpp"
 #include "assessment/terms.hpp"
 #include "core/try.hpp"
@@ -62,90 +63,6 @@ double half_width(const statistics::Lmm& fit, double x) {
          std::sqrt(contrast.dot(fit.covariance * contrast));
 }
 
-constexpr std::size_t kMostLevelsListed = 200;
-
-/// The level of each row: its cells of the grouping's columns, joined.
-std::vector<std::string> labels_of(const Table& table, const RandomEffects& effects) {
-  std::vector<std::string> out(table.texts(effects.columns[0]).size());
-  for (const auto& column : effects.columns) {
-    const auto& cells = table.texts(column);
-    for (std::size_t i = 0; i < out.size(); ++i)
-      out[i] += (&column == &effects.columns[0] ? "" : ":") + std::string(cells[i]);
-  }
-  return out;
-}
-
-core::Result<statistics::RandomTerm> random_term(const Analysis& of, const RandomEffects& effects) {
-  statistics::RandomTerm out{
-      .group = effects.group(), .labels = labels_of(of.table, effects), .columns = {}, .names = {}};
-  const auto rows = std::ssize(out.labels);
-  out.columns.resize(rows, std::ssize(effects.slopes) + (effects.intercept ? 1 : 0));
-  if (effects.intercept) {
-    out.columns.col(0).setOnes();
-    out.names.push_back("(Intercept)");
-  }
-  for (const auto& slope : effects.slopes) {
-    TRY(of.table.holds_numbers(slope));
-    out.columns.col(std::ssize(out.names)) = TRY(of.table.numbers(slope));
-    out.names.push_back(slope);
-  }
-  return out;
-}
-
-/// One row per variance and, of a term with slopes, per correlation.
-void add_random_effects(const statistics::MixedModel& fit, Json& out) {
-  out["random_effects"] = Json::array();
-  for (const auto& part : fit.random)
-    for (Eigen::Index r = 0; r < part.covariance.rows(); ++r)
-      for (Eigen::Index c = 0; c <= r; ++c) {
-        const double own = part.covariance(r, c);
-        const double scale = std::sqrt(part.covariance(r, r) * part.covariance(c, c));
-        const auto& names = part.names;
-        out["random_effects"].push_back(
-            {{"group", part.group},
-             {"effect", r == c ? names[std::size_t(r)]
-                               : names[std::size_t(c)] + " with " + names[std::size_t(r)]},
-             {"levels", part.levels.size()},
-             {"covariance", own},
-             {"standard_deviation", r == c ? Json(std::sqrt(own)) : Json()},
-             {"correlation", r != c && scale > 0.0 ? Json(own / scale) : Json()}});
-      }
-  out["model"] = {{"variance_residual", fit.sigma_squared},
-                  {"reml_criterion", fit.criterion},
-                  {"parameters", fit.parameters}};
-}
-
-void add_predictions(const statistics::MixedModel& fit, Json& out) {
-  out["group_effects"] = Json::array();
-  for (const auto& part : fit.random) {
-    if (part.levels.size() > kMostLevelsListed) continue;
-    for (std::size_t level = 0; level < part.levels.size(); ++level)
-      for (std::size_t e = 0; e < part.names.size(); ++e)
-        out["group_effects"].push_back(
-            {{"name", part.levels[level]},
-             {"group", part.group},
-             {"of", part.names[e]},
-             {"effect", part.effects(Eigen::Index(level), Eigen::Index(e))}});
-  }
-}
-
-Json notes_of(const statistics::MixedModel& fit) {
-  Json out = Json::array();
-  for (const auto& part : fit.random) {
-    if (part.singular)
-      out.push_back(
-          fmt::format("singular: the data do not support all random effects of {} (a "
-                      "variance of 0, or a correlation of 1); a simpler term says the "
-                      "same",
-                      part.group));
-    if (part.levels.size() < 6)
-      out.push_back(fmt::format("{} levels of {} say little about the spread between them",
-                                part.levels.size(), part.group));
-  }
-  if (!fit.converged) out.push_back("the criterion's minimum was not reached to all digits");
-  return out;
-}
-
 /// y − X β − Z b: what is left of each row.
 statistics::Vector residuals_of(const Problem& problem,
                                 const std::vector<statistics::RandomTerm>& terms,
@@ -164,11 +81,7 @@ statistics::Vector residuals_of(const Problem& problem,
 
 core::Result<Findings> run_with_random_terms(const Analysis& of) {
   const auto problem = TRY(problem_of(of, true));
-  std::vector<statistics::RandomTerm> terms;
-  for (const auto& effects : of.formula.random) {
-    auto term = TRY(random_term(of, effects));
-    terms.push_back(std::move(term));
-  }
+  const auto terms = TRY(random_terms(of));
   const auto fit = statistics::mixed_model(problem.design(), problem.y, terms,
                                            statistics::Likelihood::reml, of.progress);
   if (!fit) return located(of, fit.error());
@@ -198,11 +111,13 @@ core::Result<Findings> run_with_random_terms(const Analysis& of) {
          return by_kr ? statistics::joint_test(kr, columns) : statistics::joint_test(*fit, columns);
        }},
       out);
-  add_random_effects(*fit, out);
-  add_predictions(*fit, out);
+  add_random_effects(fit->random, out);
+  out["model"] = {{"variance_residual", fit->sigma_squared},
+                  {"reml_criterion", fit->criterion},
+                  {"parameters", fit->parameters}};
   const Vector residuals = residuals_of(problem, terms, *fit);
   out["checks"] = Json::array({normality_check(residuals)});
-  out["notes"] = notes_of(*fit);
+  out["notes"] = random_notes(fit->random, fit->converged);
   Findings found{std::move(out), {}};
   found.figures.push_back(residual_picture(problem.y - residuals, residuals));
   return found;

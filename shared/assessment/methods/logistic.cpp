@@ -1,12 +1,15 @@
-/// Logistic regression: plain, Firth's where outcomes are separated, mixed with (1|group).
+/// Logistic regression: plain, Firth's where outcomes are separated, mixed with (1|group) or with any
+/// random terms.
 #include "statistics/regression/logistic.hpp"
 
 #include <fmt/format.h>
 
+#include "assessment/random_terms.hpp"
 #include "assessment/report.hpp"
 #include "assessment/terms.hpp"
 #include "core/try.hpp"
 #include "statistics/mixed/glmm.hpp"
+#include "statistics/mixed/logistic_mixed_model.hpp"
 
 namespace tractus {
 namespace assessment {
@@ -15,6 +18,8 @@ namespace {
 using core::Json;
 using statistics::Counts;
 using statistics::Vector;
+
+constexpr double kFewAnswers = 10.0;  // for each level, below which Laplace's bias is said
 
 core::Result<Counts> counts_of(const Analysis& of) {
   auto successes = TRY(of.table.numbers(of.formula.response));
@@ -88,6 +93,38 @@ core::Result<Findings> mixed(const Analysis& of, const ModelMatrix& model, const
   return Findings{std::move(out), {}};
 }
 
+core::Result<Findings> mixed_with_random_terms(const Analysis& of, const ModelMatrix& model,
+                                               const Counts& counts) {
+  const auto terms = TRY(random_terms(of));
+  const auto fit = statistics::logistic_mixed_model(model.design, counts, terms, of.progress);
+  if (!fit) return located(of, fit.error());
+  if (of.progress) of.progress(1.0);
+  const Vector odds = fit->coefficients.array().exp(), low = fit->ci_low.array().exp(),
+               high = fit->ci_high.array().exp();
+  Json out = report_head(of, "logistic mixed model, Laplace's approximation");
+  out["coefficients"] = coefficient_table(fit->names, {{"estimate", &fit->coefficients},
+                                                       {"standard_error", &fit->standard_errors},
+                                                       {"z", &fit->z},
+                                                       {"p", &fit->p},
+                                                       {"odds_ratio", &odds},
+                                                       {"odds_ratio95_low", &low},
+                                                       {"odds_ratio95_high", &high}});
+  add_tests(of, model, fit->coefficients, fit->covariance, out);
+  add_random_effects(fit->random, out);
+  out["model"] = {
+      {"log_likelihood", fit->log_likelihood}, {"AIC", fit->aic}, {"parameters", fit->parameters}};
+  out["notes"] = random_notes(fit->random, fit->converged);
+  for (const auto& part : fit->random) {
+    const double answers = counts.trials.sum() / double(part.levels.size());
+    if (answers < kFewAnswers)
+      out["notes"].push_back(fmt::format(
+          "{:.3g} answers for each level of {}: of few, Laplace's approximation makes the spread "
+          "between levels and the odds ratios too small",
+          answers, part.group));
+  }
+  return Findings{std::move(out), {}};
+}
+
 /// Likelihood-profile ends of every coefficient; NaN where the likelihood does not bound it.
 std::pair<Vector, Vector> profiles(const statistics::Design& design, const Counts& counts,
                                    const statistics::Logistic& fit) {
@@ -136,6 +173,7 @@ Findings plain(const Analysis& of, const ModelMatrix& model, const Counts& count
 core::Result<Findings> run_logistic(const Analysis& of) {
   const auto model = TRY(model_matrix(of.formula, of.table));
   const auto counts = TRY(counts_of(of));
+  if (!of.formula.random.empty()) return mixed_with_random_terms(of, model, counts);
   if (!of.formula.group.empty()) return mixed(of, model, counts);
   const auto fit = statistics::logistic(model.design, counts);
   if (!fit && fit.error().code == core::Errc::out_of_range) return firth(of, model, counts);
@@ -147,14 +185,16 @@ core::Result<Findings> run_logistic(const Analysis& of) {
 
 namespace methods {
 Method logistic_method() {
-  return {"logistic",
-          "Logistic regression of right and wrong answers; mixed with (1|subject)",
-          "wrong_breach/6 ~ experience_years",
-          "logistic regression by maximum likelihood (Firth's penalised likelihood where outcomes "
-          "are separated; a random intercept by 50-node adaptive quadrature where answers of the "
-          "same person recur)",
-          {},
-          run_logistic};
+  return {
+      "logistic",
+      "Logistic regression of right and wrong answers; mixed with (1|subject) or more random terms",
+      "wrong_breach/6 ~ experience_years",
+      "logistic regression by maximum likelihood (Firth's penalised likelihood where outcomes "
+      "are separated; a random intercept by 50-node adaptive quadrature where answers of the "
+      "same person recur; other random terms by Laplace's approximation)",
+      {},
+      run_logistic,
+      true};
 }
 }  // namespace methods
 }  // namespace assessment

@@ -1,6 +1,7 @@
 #include "statistics/distributions/binomial.hpp"
 
 #include <bit>
+#include <cmath>
 #include <cstdint>
 
 namespace tractus {
@@ -27,6 +28,16 @@ bool same(const Matrix& columns, Eigen::Index a, Eigen::Index b) {
 }
 
 }  // namespace
+
+double log_coefficients(const Counts& counts) {
+  const auto ln_choose = [](double m, double y) {
+    return std::lgamma(m + 1.0) - std::lgamma(y + 1.0) - std::lgamma(m - y + 1.0);
+  };
+  double sum = 0.0;
+  for (Eigen::Index i = 0; i < counts.trials.size(); ++i)
+    sum += ln_choose(counts.trials[i], counts.successes[i]);
+  return sum;
+}
 
 std::optional<Merged> merged(const Matrix& columns, const Counts& counts) {
   const Eigen::Index n = columns.rows();

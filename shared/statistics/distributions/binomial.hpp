@@ -24,6 +24,9 @@ typename Derived::PlainObject inverse_logit(const Eigen::ArrayBase<Derived>& eta
   return 1.0 / (1.0 + (-eta).exp());
 }
 
+/// Σ ln of the binomial coefficients: the part of the log-likelihood that no parameter changes.
+double log_coefficients(const Counts& counts);
+
 /// Rows of the same columns as one row of more trials, in order of first appearance: the likelihood
 /// keeps its shape, its maximum its place.
 struct Merged {

@@ -1,6 +1,7 @@
 #include "statistics/mixed/derivatives.hpp"
 
 #include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 #include <cmath>
 
 namespace tractus {
@@ -38,21 +39,27 @@ bool search_line(const ScalarField& f, const Vector& direction, double slope, Mi
   return false;
 }
 
-void quasi_newton(const ScalarField& f, double step, int most_steps, Minimum& at) {
+struct Smooth {
+  const ScalarField& value;
+  VectorField gradient;
+  std::function<Matrix(const Vector&)> hessian;
+};
+
+void quasi_newton(const Smooth& f, int most_steps, Minimum& at) {
   const auto n = at.x.size();
   Matrix inverse = Matrix::Identity(n, n);
-  Vector gradient = numeric_gradient(f, at.x, step);
+  Vector gradient = f.gradient(at.x);
   bool fresh = true;
   for (int k = 0; k < most_steps; ++k) {
     Vector direction = -inverse * gradient;
     const Vector before = at.x;
-    if (!search_line(f, direction, gradient.dot(direction), at)) {
+    if (!search_line(f.value, direction, gradient.dot(direction), at)) {
       if (fresh) return;
       inverse.setIdentity();
       fresh = true;
       continue;
     }
-    const Vector s = at.x - before, next = numeric_gradient(f, at.x, step), y = next - gradient;
+    const Vector s = at.x - before, next = f.gradient(at.x), y = next - gradient;
     gradient = next;
     const double sy = s.dot(y);
     if (!(sy > 1e-12 * s.norm() * y.norm())) continue;
@@ -64,14 +71,14 @@ void quasi_newton(const ScalarField& f, double step, int most_steps, Minimum& at
 }
 
 /// True where the last step was small: the minimum is reached.
-bool newton(const ScalarField& f, double step, Minimum& at) {
+bool newton(const Smooth& f, Minimum& at) {
   for (int k = 0; k < 6; ++k) {
-    const Vector gradient = numeric_gradient(f, at.x, step);
-    const Eigen::LDLT<Matrix> hessian(numeric_hessian(f, at.x, 4.0 * step));
+    const Vector gradient = f.gradient(at.x);
+    const Eigen::LDLT<Matrix> hessian(f.hessian(at.x));
     if (hessian.info() != Eigen::Success || !hessian.isPositive()) return false;
     const Vector move = -hessian.solve(gradient);
     if (!move.allFinite()) return false;
-    const double value = f(at.x + move);
+    const double value = f.value(at.x + move);
     if (!(value <= at.value + 10.0 * noise(at.value))) {
       // So near the minimum the slope tells more than the value, which is a sum of many terms.
       const bool near = move.norm() < 1e-5;
@@ -83,6 +90,14 @@ bool newton(const ScalarField& f, double step, Minimum& at) {
     if (move.norm() < 1e-9 * (1.0 + at.x.norm())) return true;
   }
   return true;
+}
+
+Minimum minimum(const Smooth& f, const Vector& start, int most_steps) {
+  Minimum at{start, f.value(start), false};
+  if (start.size() == 0) return at.converged = true, at;
+  quasi_newton(f, most_steps, at);
+  at.converged = newton(f, at);
+  return at;
 }
 
 }  // namespace
@@ -111,12 +126,36 @@ Matrix numeric_hessian(const ScalarField& f, const Vector& x, double step) {
   return out;
 }
 
+Matrix twice_inverse(const Matrix& hessian) {
+  const Eigen::SelfAdjointEigenSolver<Matrix> eigen(hessian);
+  Vector inverse = Vector::Zero(hessian.rows());
+  const double most = eigen.eigenvalues().cwiseAbs().maxCoeff();
+  for (Eigen::Index k = 0; k < inverse.size(); ++k)
+    if (eigen.eigenvalues()[k] > 1e-8 * most) inverse[k] = 2.0 / eigen.eigenvalues()[k];
+  return eigen.eigenvectors() * inverse.asDiagonal() * eigen.eigenvectors().transpose();
+}
+
+Matrix hessian_of_gradient(const VectorField& gradient, const Vector& x, double step) {
+  const auto n = x.size();
+  Matrix out(n, n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const auto at = [&](double times) { return gradient(x + times * step * Vector::Unit(n, i)); };
+    out.col(i) = (at(-2) - 8 * at(-1) + 8 * at(1) - at(2)) / (12 * step);
+  }
+  return 0.5 * (out + out.transpose());
+}
+
 Minimum minimise(const ScalarField& f, const Vector& start, double step, int most_steps) {
-  Minimum at{start, f(start), false};
-  if (start.size() == 0) return at.converged = true, at;
-  quasi_newton(f, step, most_steps, at);
-  at.converged = newton(f, step, at);
-  return at;
+  return minimum({f, [&](const Vector& x) { return numeric_gradient(f, x, step); },
+                  [&](const Vector& x) { return numeric_hessian(f, x, 4.0 * step); }},
+                 start, most_steps);
+}
+
+Minimum minimise(const ScalarField& f, const VectorField& gradient, const Vector& start,
+                 double step, int most_steps) {
+  return minimum(
+      {f, gradient, [&](const Vector& x) { return hessian_of_gradient(gradient, x, step); }}, start,
+      most_steps);
 }
 
 }  // namespace statistics

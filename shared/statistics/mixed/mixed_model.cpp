@@ -1,7 +1,5 @@
 #include "statistics/mixed/mixed_model.hpp"
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/SVD>
 #include <cmath>
 #include <numbers>
 
@@ -18,7 +16,6 @@ using core::Errc;
 using core::Error;
 
 constexpr double kThetaStep = 2e-3;  // of differences in θ, whose entries are of order 1
-constexpr double kSingular = 1e-4;   // as lme4's isSingular: relative to σ
 
 /// The criterion of given data as a function of θ.
 class ProfiledCriterion {
@@ -77,16 +74,8 @@ void add_random(const ProfiledCriterion& problem, const Vector& theta, const Pen
   Eigen::Index place = 0;
   for (std::size_t t = 0; t < at.effects.size(); ++t) {
     const ScaledTerm& term = problem.squares().terms()[t];
-    const Matrix block = triangle(term, theta, place);
-    const Matrix unscaled = term.scale.cwiseInverse().asDiagonal() * block;
-    RandomPart part;
-    part.group = term.from->group;
-    part.names = term.from->names;
-    part.levels = term.levels;
-    part.covariance = out.sigma_squared * unscaled * unscaled.transpose();
-    const Eigen::JacobiSVD<Matrix> svd(block);
-    part.singular = svd.singularValues().minCoeff() < kSingular;
-    part.effects = at.effects[t] * term.scale.cwiseInverse().asDiagonal();
+    RandomPart part =
+        random_part(term, triangle(term, theta, place), at.effects[t], out.sigma_squared);
     out.singular = out.singular || part.singular;
     out.random.push_back(std::move(part));
   }
@@ -95,16 +84,6 @@ void add_random(const ProfiledCriterion& problem, const Vector& theta, const Pen
 Matrix unscaled_covariance(const ProfiledCriterion& problem, const Penalised& at) {
   const auto inverse = problem.squares().column_scale().cwiseInverse();
   return inverse.asDiagonal() * at.covariance * inverse.asDiagonal();
-}
-
-/// Twice the inverse of a Hessian; directions of no or negative curvature have no covariance.
-Matrix twice_inverse(const Matrix& hessian) {
-  const Eigen::SelfAdjointEigenSolver<Matrix> eigen(hessian);
-  Vector inverse = Vector::Zero(hessian.rows());
-  const double most = eigen.eigenvalues().cwiseAbs().maxCoeff();
-  for (Eigen::Index k = 0; k < inverse.size(); ++k)
-    if (eigen.eigenvalues()[k] > 1e-8 * most) inverse[k] = 2.0 / eigen.eigenvalues()[k];
-  return eigen.eigenvectors() * inverse.asDiagonal() * eigen.eigenvectors().transpose();
 }
 
 /// Hessian of the criterion in (θ, σ), not profiled: ln|L|² (+ ln|R_X|²) + r²/σ² + df ln(2πσ²).
@@ -154,7 +133,7 @@ void add_tests(MixedModel& out) {
 core::Result<MixedModel> mixed_model(const Design& design, const Vector& response,
                                      const std::vector<RandomTerm>& terms, Likelihood likelihood,
                                      const core::Progress& progress) {
-  TRY(check_terms(terms, response.size()));
+  TRY(check_terms(terms, response.size(), double(response.size())));
   TRY(check(design, response));
   if (!collinear_columns(design).empty()) return collinear_error(design);
   const ProfiledCriterion problem(design, response, terms);

@@ -25,15 +25,6 @@
 
 namespace tractus::statistics {
 
-struct RandomPart {
-  std::string group;
-  std::vector<std::string> names;   ///< of the effects
-  Matrix covariance;                ///< Σ_t [effect][effect]
-  std::vector<std::string> levels;  ///< in order of first appearance
-  Matrix effects;                   ///< best linear unbiased predictions, [level][effect]
-  bool singular = false;            ///< Σ_t has no full rank
-};
-
 enum class Likelihood { reml, ml };
 
 struct MixedModel {

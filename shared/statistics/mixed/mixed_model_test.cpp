@@ -6,9 +6,8 @@
 #include <cmath>
 #include <map>
 #include <random>
-#include <set>
 
-#include "statistics/golden_test.hpp"
+#include "statistics/mixed/golden_terms_test.hpp"
 #include "statistics/mixed/kenward_roger.hpp"
 #include "statistics/mixed/lmm.hpp"
 
@@ -16,14 +15,12 @@ namespace tractus {
 namespace statistics {
 namespace {
 
+using golden::design_of;
 using golden::expect_near;
-
-/// (1 + slope | columns); no slope where it is empty.
-struct Term {
-  std::vector<std::string> columns;
-  std::string slope = {};
-  bool intercept = true;
-};
+using golden::expect_random;
+using golden::key_of;
+using golden::random_term;
+using golden::Term;
 
 const std::map<std::string, std::vector<Term>> kTerms = {
     {"sim_crossed_1", {{{"surgeon"}}, {{"scenario"}}}},
@@ -34,65 +31,6 @@ const std::map<std::string, std::vector<Term>> kTerms = {
     {"sim_crossed_6", {{{"surgeon"}, "trial"}, {{"scenario"}, "trial"}}},
     {"penicillin", {{{"plate"}}, {{"sample"}}}},
     {"pastes", {{{"batch"}}, {{"batch", "cask"}}}}};
-
-RandomTerm random_term(const golden::Csv& csv, const Term& term) {
-  RandomTerm out;
-  for (const auto& column : term.columns) {
-    const auto cells = csv.texts(column);
-    out.labels.resize(cells.size());
-    for (std::size_t i = 0; i < cells.size(); ++i)
-      out.labels[i] += (out.group.empty() ? "" : ":") + cells[i];
-    out.group += (out.group.empty() ? "" : ":") + column;
-  }
-  const auto n = Eigen::Index(out.labels.size());
-  std::vector<Vector> columns;
-  if (term.intercept) columns.push_back(Vector::Ones(n));
-  if (!term.slope.empty()) columns.push_back(csv.numbers(term.slope));
-  out.columns.resize(n, std::ssize(columns));
-  for (std::size_t c = 0; c < columns.size(); ++c) {
-    out.columns.col(Eigen::Index(c)) = columns[c];
-    out.names.push_back(std::to_string(c));
-  }
-  return out;
-}
-
-/// trial, and the scenario's levels against the first, as the formula says.
-Design design_of(const golden::Csv& csv, const std::string& formula, Eigen::Index rows) {
-  std::vector<Vector> columns;
-  if (formula.find("~ trial") != std::string::npos) columns.push_back(csv.numbers("trial"));
-  if (formula.find("+ scenario") != std::string::npos) {
-    const auto cells = csv.texts("scenario");
-    const std::set<std::string> levels(cells.begin(), cells.end());
-    for (auto level = std::next(levels.begin()); level != levels.end(); ++level) {
-      columns.push_back(Vector::Zero(rows));
-      for (std::size_t i = 0; i < cells.size(); ++i)
-        if (cells[i] == *level) columns.back()[Eigen::Index(i)] = 1.0;
-    }
-  }
-  Matrix all(rows, std::ssize(columns));
-  std::vector<std::string> names;
-  for (std::size_t c = 0; c < columns.size(); ++c) {
-    all.col(Eigen::Index(c)) = columns[c];
-    names.push_back("x" + std::to_string(c));
-  }
-  return with_intercept(all, names);
-}
-
-void expect_random(const RandomPart& part, const core::Json& want, const std::string& what) {
-  const double largest = golden::matrix_of(want).cwiseAbs().maxCoeff();
-  for (Eigen::Index r = 0; r < part.covariance.rows(); ++r)
-    for (Eigen::Index c = 0; c < part.covariance.cols(); ++c)
-      EXPECT_NEAR(part.covariance(r, c), want[std::size_t(r)][std::size_t(c)].get<double>(),
-                  1e-6 * largest + 1e-9)
-          << what << " " << part.group;
-}
-
-/// A random term's key in lme4's answer: "surgeon", and "surgeon.1" for the second of that group.
-std::string key_of(const MixedModel& fit, std::size_t term) {
-  int before = 0;
-  for (std::size_t t = 0; t < term; ++t) before += fit.random[t].group == fit.random[term].group;
-  return fit.random[term].group + (before ? "." + std::to_string(before) : "");
-}
 
 TEST(MixedModelTest, AgreesWithLme4ToSixDigits) {
   const auto reference = golden::expected("lmm_random_terms");
@@ -115,7 +53,7 @@ TEST(MixedModelTest, AgreesWithLme4ToSixDigits) {
     // lmerTest differentiates numerically too, from where its own search ended.
     if (!fit->singular) expect_near(fit->df, golden::as_list(want["df"]), 1e-4, name + " df");
     for (std::size_t t = 0; t < terms.size(); ++t)
-      expect_random(fit->random[t], want["covariances"][key_of(*fit, t)], name);
+      expect_random(fit->random[t], want["covariances"][key_of(fit->random, t)], name);
     const auto ml = mixed_model(design, y, terms, Likelihood::ml);
     ASSERT_TRUE(ml) << name << ": " << ml.error().what;
     expect_near(ml->criterion, want["ml"]["deviance"], 1e-9, name + " deviance");

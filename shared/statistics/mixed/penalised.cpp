@@ -1,5 +1,6 @@
 #include "statistics/mixed/penalised.hpp"
 
+#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <unordered_map>
@@ -13,6 +14,8 @@ using core::Error;
 
 constexpr Eigen::Index kMostEffects = 200'000;
 constexpr Eigen::Index kMostDense = 3000;  // columns of Z₂: K and S of 72 MB each
+
+constexpr double kSingular = 1e-4;  // as lme4's isSingular: of Λ
 
 Error bad(const std::string& what) { return {Errc::bad_input, what}; }
 
@@ -34,7 +37,8 @@ ScaledTerm scaled(const RandomTerm& term) {
   return out;
 }
 
-core::Result<void> check_terms(const std::vector<RandomTerm>& terms, Eigen::Index rows) {
+core::Result<void> check_terms(const std::vector<RandomTerm>& terms, Eigen::Index rows,
+                               double outcomes) {
   core::require(!terms.empty(), "a mixed model has a random term");
   Eigen::Index total = 0;
   for (const auto& term : terms) {
@@ -44,7 +48,7 @@ core::Result<void> check_terms(const std::vector<RandomTerm>& terms, Eigen::Inde
     const auto levels = Eigen::Index(scaled(term).levels.size());
     if (levels < 2)
       return bad(term.group + ": one level: the spread between its levels cannot be estimated");
-    if (levels * term.columns.cols() >= rows)
+    if (double(levels * term.columns.cols()) >= outcomes)
       return bad(term.group +
                  ": as many effects as observations: they cannot be told from the "
                  "residual");
@@ -63,6 +67,20 @@ Matrix triangle(const ScaledTerm& term, const Vector& theta, Eigen::Index& at) {
   Matrix out = Matrix::Zero(term.effects(), term.effects());
   for (Eigen::Index c = 0; c < term.effects(); ++c)
     for (Eigen::Index r = c; r < term.effects(); ++r) out(r, c) = theta[at++];
+  return out;
+}
+
+RandomPart random_part(const ScaledTerm& term, const Matrix& block, const Matrix& effects,
+                       double sigma_squared) {
+  const Matrix unscaled = term.scale.cwiseInverse().asDiagonal() * block;
+  RandomPart out;
+  out.group = term.from->group;
+  out.names = term.from->names;
+  out.levels = term.levels;
+  out.covariance = sigma_squared * unscaled * unscaled.transpose();
+  const Eigen::JacobiSVD<Matrix> svd(block);
+  out.singular = svd.singularValues().minCoeff() < kSingular;
+  out.effects = effects * term.scale.cwiseInverse().asDiagonal();
   return out;
 }
 
@@ -93,14 +111,14 @@ PenalisedLeastSquares::PenalisedLeastSquares(const Matrix& x,
 /// Which columns of Z₂ each level of Z₁ meets, and where each row adds to.
 void PenalisedLeastSquares::find_pattern() {
   const auto& group_of = terms_[main_].level_of;
-  std::vector<std::vector<int>> rows(static_cast<std::size_t>(groups_));
+  rows_of_.resize(std::size_t(groups_));
   for (std::size_t i = 0; i < group_of.size(); ++i)
-    rows[std::size_t(group_of[i])].push_back(int(i));
+    rows_of_[std::size_t(group_of[i])].push_back(int(i));
   slot_.assign(terms_.size(), {});
   for (std::size_t t = 0; t < terms_.size(); ++t)
     if (!eliminated_[t]) slot_[t].resize(group_of.size());
   begin_ = {0};
-  for (const auto& of_group : rows) {
+  for (const auto& of_group : rows_of_) {
     for (std::size_t t = 0; t < terms_.size(); ++t) {
       if (eliminated_[t]) continue;
       const auto& level_of = terms_[t].level_of;
@@ -128,11 +146,11 @@ void PenalisedLeastSquares::observe(const Vector& y, const Vector& weights) {
   with_xy_.assign(std::size_t(groups_), Matrix::Zero(k_, p + 1));
   zz_ = Matrix::Zero(dense_ ? q2_ : 0, dense_ ? q2_ : 0);
   ze_ = Matrix::Zero(q2_, p + 1);
-  const Vector w = weights.size() == 0 ? Vector::Ones(y.size()) : weights;
+  weights_ = weights.size() == 0 ? Vector::Ones(y.size()) : weights;
   Matrix xy(y.size(), p + 1);
   xy << x_, y;
-  ee_ = xy.transpose() * w.asDiagonal() * xy;
-  sum_rows(xy, w);
+  ee_ = xy.transpose() * weights_.asDiagonal() * xy;
+  sum_rows(xy, weights_);
 }
 
 /// Adds each row to the cross products with Z.
@@ -199,21 +217,27 @@ std::vector<Matrix> PenalisedLeastSquares::triangles(const Vector& theta) const 
   return out;
 }
 
+/// Λ₁ of one level: the blocks of all terms of the first grouping.
+Matrix PenalisedLeastSquares::lambda1(const std::vector<Matrix>& lambda) const {
+  Matrix out = Matrix::Zero(k_, k_);
+  for (std::size_t t = 0; t < terms_.size(); ++t)
+    if (eliminated_[t])
+      out.block(first_[t], first_[t], lambda[t].rows(), lambda[t].rows()) = lambda[t];
+  return out;
+}
+
 PenalisedLeastSquares::Eliminated PenalisedLeastSquares::eliminate(
     const std::vector<Matrix>& lambda) const {
   Eliminated out;
-  Matrix lambda1 = Matrix::Zero(k_, k_);
-  for (std::size_t t = 0; t < terms_.size(); ++t)
-    if (eliminated_[t])
-      lambda1.block(first_[t], first_[t], lambda[t].rows(), lambda[t].rows()) = lambda[t];
+  const Matrix of_level = lambda1(lambda);
   out.zz = zz_;
   out.ze = ze_;
   out.ee = ee_;
   out.p.reserve(std::size_t(groups_));
   for (const auto& own : own_) {
-    const Eigen::LLT<Matrix> a(lambda1.transpose() * own * lambda1 + Matrix::Identity(k_, k_));
+    const Eigen::LLT<Matrix> a(of_level.transpose() * own * of_level + Matrix::Identity(k_, k_));
     out.log_det += 2.0 * sum_of_logs(a.matrixLLT().diagonal());
-    const Matrix half = a.matrixL().solve(lambda1.transpose());
+    const Matrix half = a.matrixL().solve(of_level.transpose());
     out.p.push_back(half.transpose() * half);
   }
   if (k_ == 1)
@@ -347,19 +371,33 @@ Penalised PenalisedLeastSquares::solve(const Vector& theta, Want want) const {
   return out;
 }
 
-/// Λ u of both parts: of Z₂ from u₂, of Z₁ from what Z₂ leaves, level by level.
+Penalised PenalisedLeastSquares::solve_effects(const Vector& theta) const {
+  const auto p = x_.cols();
+  const std::vector<Matrix> lambda = triangles(theta);
+  const Eliminated at = eliminate(lambda);
+  Penalised out;
+  out.log_det_L = at.log_det + factorise(lambda, at);
+  const Vector c = forward(turned(lambda, at.ze.col(p)));
+  add_effects(lambda, at, backward(c), Vector::Unit(p + 1, p), out);
+  return out;
+}
+
+/// u and Λ u of both parts: of Z₂ from u₂, of Z₁ from what Z₂ leaves, level by level.
 void PenalisedLeastSquares::add_effects(const std::vector<Matrix>& lambda, const Eliminated& at,
                                         const Vector& u2, const Vector& residual,
                                         Penalised& out) const {
   Vector b2(q2_);
+  const Matrix of_level = lambda1(lambda);
   for (std::size_t t = 0; t < terms_.size(); ++t) {
     const auto k = terms_[t].effects();
     out.effects.emplace_back(std::ssize(terms_[t].levels), k);
+    out.u.emplace_back(std::ssize(terms_[t].levels), k);
     if (eliminated_[t]) continue;
     for (Eigen::Index level = 0; level < out.effects[t].rows(); ++level) {
       const auto from = first_[t] + level * k;
       b2.segment(from, k) = lambda[t] * u2.segment(from, k);
       out.effects[t].row(level) = b2.segment(from, k).transpose();
+      out.u[t].row(level) = u2.segment(from, k).transpose();
     }
   }
   for (std::size_t g = 0; g < at.p.size(); ++g) {
@@ -367,9 +405,12 @@ void PenalisedLeastSquares::add_effects(const std::vector<Matrix>& lambda, const
     for (std::size_t c = begin_[g]; c < begin_[g + 1]; ++c)
       left -= b2[column_[c]] * Eigen::Map<const Vector>(&cross_[c * std::size_t(k_)], k_);
     const Vector b1 = at.p[g] * left;
-    for (std::size_t t = 0; t < terms_.size(); ++t)
-      if (eliminated_[t])
-        out.effects[t].row(Eigen::Index(g)) = b1.segment(first_[t], terms_[t].effects());
+    const Vector u1 = of_level.transpose() * (left - own_[g] * b1);  // A u = Λᵀ left
+    for (std::size_t t = 0; t < terms_.size(); ++t) {
+      if (!eliminated_[t]) continue;
+      out.effects[t].row(Eigen::Index(g)) = b1.segment(first_[t], terms_[t].effects());
+      out.u[t].row(Eigen::Index(g)) = u1.segment(first_[t], terms_[t].effects());
+    }
   }
 }
 

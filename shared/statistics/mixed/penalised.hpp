@@ -38,6 +38,11 @@ ScaledTerm scaled(const RandomTerm& term);
 /// Λ_t of a term, from its part of θ in column order; moves `at` behind it.
 Matrix triangle(const ScaledTerm& term, const Vector& theta, Eigen::Index& at);
 
+/// A term's part of an estimate in units of the columns as given: `block` is its Λ_t, `effects`
+/// are Λ u, [level][effect]. Singular as lme4's isSingular says.
+RandomPart random_part(const ScaledTerm& term, const Matrix& block, const Matrix& effects,
+                       double sigma_squared);
+
 /// What one θ gives, in units of the scaled columns.
 struct Penalised {
   double log_det_L = 0.0;   ///< ln|L|²
@@ -46,6 +51,13 @@ struct Penalised {
   Vector beta;
   Matrix covariance;            ///< (R_XᵀR_X)⁻¹; empty unless asked for
   std::vector<Matrix> effects;  ///< Λ u per term, [level][effect]; empty unless asked for
+  std::vector<Matrix> u;        ///< as `effects`
+};
+
+/// Derivatives of ln|L|².
+struct LogDeterminantSlope {
+  Vector of_weights;  ///< per observation, h = z Λ (L Lᵀ)⁻¹ Λᵀ zᵀ, z its row of Z
+  Vector of_theta;    ///< at these weights: 2 tr((L Lᵀ)⁻¹ Λᵀ Zᵀ W Z dΛ)
 };
 
 class PenalisedLeastSquares {
@@ -58,6 +70,10 @@ class PenalisedLeastSquares {
 
   enum class Want { criterion, everything };
   Penalised solve(const Vector& theta, Want want) const;
+  /// Without X, the response being Z Λ u and noise: ln|L|², u and Λ u alone.
+  Penalised solve_effects(const Vector& theta) const;
+  /// Of the weights observed last; `theta` is that of the last solve_effects().
+  LogDeterminantSlope log_determinant_slope(const Vector& theta) const;
 
   /// θ of Λ = I.
   Vector start() const;
@@ -85,6 +101,7 @@ class PenalisedLeastSquares {
   void find_pattern();
   void sum_rows(const Matrix& xy, const Vector& weights);
   std::vector<Matrix> triangles(const Vector& theta) const;
+  Matrix lambda1(const std::vector<Matrix>& lambda) const;
   Eliminated eliminate(const std::vector<Matrix>& lambda) const;
   template <int K>
   void subtract(Eliminated& out) const;
@@ -96,8 +113,15 @@ class PenalisedLeastSquares {
   Vector backward(const Vector& right) const;  // L⁻ᵀ
   void add_effects(const std::vector<Matrix>& lambda, const Eliminated& at, const Vector& u2,
                    const Vector& residual, Penalised& out) const;
+  struct OfGroup;
+  template <class Inverse>
+  OfGroup of_group(std::size_t group, const Matrix& lambda1, const Inverse& n,
+                   const Inverse& q) const;
+  template <class Inverse>
+  LogDeterminantSlope slope(const std::vector<Matrix>& lambda, const Inverse& s_inverse) const;
 
-  Matrix x_;  // scaled
+  Matrix x_;        // scaled
+  Vector weights_;  // observed last
   std::vector<ScaledTerm> terms_;
   Vector column_scale_;
   std::size_t main_ = 0;             // the term whose levels are eliminated
@@ -109,6 +133,7 @@ class PenalisedLeastSquares {
   std::vector<std::size_t> begin_;
   std::vector<int> column_;
   std::vector<double> cross_;
+  std::vector<std::vector<int>> rows_of_;       // per level of Z₁
   std::vector<std::vector<std::size_t>> slot_;  // [term of Z₂][row]: its first place in column_
   std::vector<Matrix> own_, with_xy_;           // Z₁ᵀ W Z₁ and Z₁ᵀ W [X y] of each level
   Matrix zz_, ze_, ee_;                         // of Z₂ and [X y]

@@ -50,15 +50,6 @@ double kernel(const Counts& c, const Array& eta) {
   return (c.successes.array() * eta - c.trials.array() * softplus).sum();
 }
 
-double binomial_coefficients(const Counts& c) {
-  const auto ln_choose = [](double m, double y) {
-    return std::lgamma(m + 1.0) - std::lgamma(y + 1.0) - std::lgamma(m - y + 1.0);
-  };
-  double sum = 0.0;
-  for (Eigen::Index i = 0; i < c.trials.size(); ++i) sum += ln_choose(c.trials[i], c.successes[i]);
-  return sum;
-}
-
 Matrix information(const Matrix& x, const Counts& c, const Array& pi) {
   const Vector w = c.trials.array() * pi * (1.0 - pi);
   return x.transpose() * w.asDiagonal() * x;
@@ -142,7 +133,7 @@ core::Result<Logistic> logistic(const Design& design, const Counts& counts) {
   const double share = counts.successes.sum() / counts.trials.sum();
   fit.null_deviance =
       deviance_of(counts, Array::Constant(x.rows(), design.intercept ? share : 0.5));
-  fit.log_likelihood = kernel(counts, eta) + binomial_coefficients(counts);
+  fit.log_likelihood = kernel(counts, eta) + binomial::log_coefficients(counts);
   fit.aic = -2.0 * fit.log_likelihood + 2.0 * static_cast<double>(x.cols());
   fit.lr_df = static_cast<double>(x.cols() - (design.intercept ? 1 : 0));
   fit.lr_chi_squared = std::max(0.0, fit.null_deviance - fit.deviance);

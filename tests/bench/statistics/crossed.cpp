@@ -1,5 +1,6 @@
 #include "bench/statistics/crossed.hpp"
 
+#include <fmt/format.h>
 #include <sys/resource.h>
 
 #include <cmath>
@@ -7,6 +8,7 @@
 #include <random>
 
 #include "bench/statistics/r_peer.hpp"
+#include "statistics/mixed/logistic_mixed_model.hpp"
 #include "statistics/mixed/mixed_model.hpp"
 
 namespace tractus {
@@ -17,7 +19,7 @@ using statistics::Matrix;
 using statistics::Vector;
 
 struct Trials {
-  Vector y, trial, surgeon, scenario;
+  Vector y, right, trial, surgeon, scenario;  // a measure, and a yes-or-no answer
   std::vector<statistics::RandomTerm> terms;
 };
 
@@ -27,14 +29,17 @@ Trials simulated(Eigen::Index rows, std::size_t surgeons, std::size_t scenarios)
   std::vector<double> level(surgeons), shift(scenarios);
   for (auto& value : level) value = normal(random);
   for (auto& value : shift) value = 0.6 * normal(random);
-  Trials out{Vector(rows), Vector(rows), Vector(rows), Vector(rows), {}};
+  Trials out{Vector(rows), Vector(rows), Vector(rows), Vector(rows), Vector(rows), {}};
   std::vector<std::string> who, what;
+  std::uniform_real_distribution<double> uniform;
   for (Eigen::Index i = 0; i < rows; ++i) {
     const std::size_t surgeon = random() % surgeons, scenario = random() % scenarios;
     out.trial[i] = double(1 + random() % 12);
     out.surgeon[i] = double(surgeon);
     out.scenario[i] = double(scenario);
     out.y[i] = 3.0 - 0.2 * out.trial[i] + level[surgeon] + shift[scenario] + 0.8 * normal(random);
+    const double logit = -1.0 + 0.2 * out.trial[i] + level[surgeon] + shift[scenario];
+    out.right[i] = uniform(random) < 1.0 / (1.0 + std::exp(-logit)) ? 1.0 : 0.0;
     who.push_back("s" + std::to_string(surgeon));
     what.push_back("c" + std::to_string(scenario));
   }
@@ -47,6 +52,20 @@ void store(const std::filesystem::path& path, const Vector& values) {
   std::ofstream file(path, std::ios::binary);
   file.write(reinterpret_cast<const char*>(values.data()),
              values.size() * Eigen::Index(sizeof(double)));
+}
+
+void store(const std::filesystem::path& folder, const Trials& of, const Vector& response) {
+  store(folder / "y.bin", response);
+  store(folder / "trial.bin", of.trial);
+  store(folder / "surgeon.bin", of.surgeon);
+  store(folder / "scenario.bin", of.scenario);
+}
+
+double largest_difference(const std::vector<double>& ours, const std::vector<double>& theirs) {
+  double most = 0.0;
+  for (std::size_t i = 0; i < ours.size(); ++i)
+    most = std::max(most, std::abs(ours[i] - theirs[i]) / std::abs(theirs[i]));
+  return most;
 }
 
 double most_memory_MB() {
@@ -68,10 +87,7 @@ void crossed(Report& report, const std::filesystem::path& folder, bool small) {
   if (!fit) return;
   report.at_most("mixed model, surgeons crossed with scenarios", s, small ? 10.0 : 120.0, "s");
   report.row("largest memory of the process", most_memory_MB(), "MB");
-  store(folder / "y.bin", of.y);
-  store(folder / "trial.bin", of.trial);
-  store(folder / "surgeon.bin", of.surgeon);
-  store(folder / "scenario.bin", of.scenario);
+  store(folder, of, of.y);
   const Answers r = r_answers("crossed_peer.R", folder, rows);
   if (!r.contains("lmer")) return;
   report.row("the same by lme4", r.at("lmer_s")[0], "s");
@@ -81,10 +97,40 @@ void crossed(Report& report, const std::filesystem::path& folder, bool small) {
                  1e-12, "");
   const std::vector<double> ours = {fit->criterion, fit->sigma_squared, fit->coefficients[0],
                                     fit->coefficients[1], fit->standard_errors[1]};
-  double most = 0.0;
-  for (std::size_t i = 0; i < ours.size(); ++i)
-    most = std::max(most, std::abs(ours[i] - theirs[i]) / std::abs(theirs[i]));
-  report.at_most("estimates, difference to lme4", most, 1e-6, "");
+  report.at_most("estimates, difference to lme4", largest_difference(ours, theirs), 1e-6, "");
+}
+
+void crossed_answers(Report& report, const std::filesystem::path& folder, bool small) {
+  for (const bool tenth : {true, false}) {
+    if (small && !tenth) break;
+    const Eigen::Index rows = tenth ? 100'000 : 1'000'000;
+    const Trials of = simulated(rows, tenth ? 1000 : 10'000, tenth ? 100 : 1000);
+    const auto design = statistics::with_intercept(of.trial, {"trial"});
+    core::Result<statistics::LogisticMixedModel> fit = core::Error{core::Errc::bad_input, ""};
+    const double s = seconds(1, process_s, [&] {
+      fit = statistics::logistic_mixed_model(design, {of.right, Vector::Ones(rows)}, of.terms);
+    });
+    report.must("the logistic mixed model's minimum was reached", fit && fit->converged);
+    if (!fit) return;
+    report.at_most(fmt::format("logistic mixed model of {} answers", rows), s, tenth ? 60.0 : 600.0,
+                   "s");
+    report.row("largest memory of the process", most_memory_MB(), "MB");
+    if (!tenth) break;  // lme4 takes hours of the whole
+    store(folder, of, of.right);
+    const Answers r = r_answers("crossed_answers_peer.R", folder, rows);
+    if (!r.contains("glmer")) continue;
+    report.row("the same by lme4", r.at("glmer_s")[0], "s");
+    const auto& theirs = r.at("glmer");
+    const double deviance = -2.0 * fit->log_likelihood;
+    report.at_most("deviance above lme4's, relative", (deviance - theirs[0]) / theirs[0], 1e-9, "");
+    // glmer stops early: its deviance tells how early.
+    report.at_most("estimates, difference to lme4",
+                   largest_difference({deviance, std::sqrt(fit->random[0].covariance(0, 0)),
+                                       std::sqrt(fit->random[1].covariance(0, 0)),
+                                       fit->coefficients[0], fit->coefficients[1]},
+                                      theirs),
+                   1e-3, "");
+  }
 }
 
 }  // namespace bench

@@ -1,4 +1,4 @@
-/// A linear mixed model of surgeons crossed with scenarios, against lme4 in the same run.
+/// Mixed models of surgeons crossed with scenarios, linear and logistic, against lme4 in the same run.
 #pragma once
 
 #include <filesystem>
@@ -10,5 +10,8 @@ namespace tractus::bench {
 /// 10⁶ rows, 10⁴ surgeons, 10³ scenarios; `small`: a tenth of each. Simulated data, written to
 /// `folder` for R.
 void crossed(Report& report, const std::filesystem::path& folder, bool small);
+
+/// The same of yes-or-no answers, first of a tenth of each, which alone lme4 does too.
+void crossed_answers(Report& report, const std::filesystem::path& folder, bool small);
 
 }  // namespace tractus::bench

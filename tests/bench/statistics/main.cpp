@@ -1,5 +1,5 @@
 /// Regressions on a million rows against R in the same run, digits on certified problems, a whole
-/// cohort, and a mixed model of crossed groupings.
+/// cohort, and mixed models of crossed groupings.
 #include <fmt/core.h>
 
 #include <cmath>
@@ -134,7 +134,7 @@ void cohort(bench::Report& report, bool small) {
 
 }  // namespace tractus
 
-/// `--small`: a tenth of the rows; `--only rows|digits|cohort|mixed`: one part.
+/// `--small`: a tenth of the rows; `--only rows|digits|cohort|mixed|answers`: one part.
 int main(int argc, char** argv) {
   using namespace tractus;
   bool small = false;
@@ -163,5 +163,6 @@ int main(int argc, char** argv) {
   if (wanted("digits")) bench::certified(report, r);
   if (wanted("cohort")) cohort(report, small);
   if (wanted("mixed")) bench::crossed(report, folder->path(), small);
+  if (wanted("answers")) bench::crossed_answers(report, folder->path(), small);
   return report.finish(argc, argv);
 }
