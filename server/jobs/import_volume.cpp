@@ -49,18 +49,17 @@ core::Error without_path(core::Error error, const fs::path& folder, const fs::pa
 }
 
 Result<volume_io::Imported> read(const fs::path& upload, const fs::path& folder,
-                                 const volume_io::UidKey& key) {
-  if (!volume_io::is_zip(upload))
-    return volume_io::read_volume(upload, volume_io::ReadOptions{.uid_key = key});
+                                 const volume_io::ReadOptions& options) {
+  if (!volume_io::is_zip(upload)) return volume_io::read_volume(upload, options);
   const fs::path volume = TRY(volume_io::unpack_volume(upload, folder / "unpacked"));
-  return volume_io::read_volume(volume, volume_io::ReadOptions{.uid_key = key});
+  return volume_io::read_volume(volume, options);
 }
 
 }  // namespace
 
 Result<Json> import_volume(const fs::path& upload, const fs::path& folder,
-                           const volume_io::UidKey& key) {
-  auto in = read(upload, folder, key);
+                           const volume_io::UidKey& key, const std::string& series_uid) {
+  auto in = read(upload, folder, {.uid_key = key, .series_uid = series_uid});
   if (!in) return without_path(in.error(), folder, upload);
   // A note within a .tvol may be anybody's words.
   if (in->format == "tractus-volume/1") in->notes.clear();

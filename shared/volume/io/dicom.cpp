@@ -12,7 +12,7 @@
 #include "volume/io/claims.hpp"
 #include "volume/io/counts.hpp"
 #include "volume/io/deidentify.hpp"
-#include "volume/io/dicom_slices.hpp"
+#include "volume/io/dicom_series.hpp"
 #include "volume/io/dicom_tags.hpp"
 #include "volume/io/formats.hpp"
 #include "volume/io/gantry_tilt.hpp"
@@ -109,14 +109,18 @@ core::Result<Imported> read_series(const fs::path& folder, const core::Progress&
 }
 
 core::Result<Imported> read_cleaned(const fs::path& folder, const fs::path& copies,
-                                    const UidKey& key, const core::Progress& progress) {
-  const auto listing = TRY(list_series(folder));
-  Deidentifier deidentifier(key);
+                                    const ReadOptions& options, const core::Progress& progress) {
+  const auto found = TRY(list_series(folder));
+  const auto listing = TRY(chosen_series(found, options.series_uid, folder));
+  Deidentifier deidentifier(options.uid_key);
   TRY(clean(listing, copies, deidentifier, progress));
   auto out = read_series(copies, progress);
   if (!out) return with_path_of(folder, copies, out.error());
   if (listing.others > 0)
     out->notes.push_back(fmt::format("{} other files in the folder were left out", listing.others));
+  if (listing.other_series > 0)
+    out->notes.push_back(
+        fmt::format("{} files of other series were left out", listing.other_series));
   out->suspicions = deidentifier.suspicions();
   out->report = deidentifier.report();
   return out;
@@ -132,7 +136,7 @@ core::Result<Imported> read_dicom(const fs::path& folder, const ReadOptions& opt
   return isolated(
       folder,
       [&](const core::Progress& passed_on) {
-        return read_cleaned(folder, copies.path(), options.uid_key, passed_on);
+        return read_cleaned(folder, copies.path(), options, passed_on);
       },
       options.progress);
 }

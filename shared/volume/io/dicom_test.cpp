@@ -41,6 +41,15 @@ Volume phantom() {
   return v;
 }
 
+/// Simulated: the first 4 slices of the phantom, 5 mm thick.
+Volume thick() {
+  Volume v = phantom();
+  v.geometry.dims[2] = 4;
+  v.geometry.spacing_m.z() = 5e-3;
+  v.counts.resize(v.geometry.voxel_count());
+  return v;
+}
+
 void expect_same(const core::Result<volume_io::Imported>& in, const Volume& v) {
   ASSERT_TRUE(in) << in.error().what;
   const auto &got = in->volume.geometry, &want = v.geometry;
@@ -173,11 +182,59 @@ TEST(Dicom, AMissingSliceIsRefusedNamingItsNeighbours) {
   expect_word(message, neighbour + " lie 4 mm apart, the others 2 mm");
 }
 
-TEST(Dicom, TwoSeriesInAFolderAreRefused) {
-  const auto message = refusal([](const fs::path& folder, const auto&) {
-    write_dicom_series(folder, phantom(), {.series_uid = "2.25.5", .prefix = "other"});
-  });
-  expect_word(message, "belongs to another series than im");
+/// The phantom as series 2.25.314159265358979, and as 2.25.5 with 4 thick slices of it, in one folder.
+void write_two_series(const fs::path& folder) {
+  write_dicom_series(folder, phantom());
+  write_dicom_series(folder, thick(), {.series_uid = "2.25.5", .prefix = "other"});
+}
+
+TEST(Dicom, TwoSeriesInAFolderAreRefusedWithAListOfThem) {
+  const Scratch folder;
+  write_two_series(folder.path());
+  const auto in = volume_io::read_volume(folder.path());
+  ASSERT_FALSE(in);
+  // As the phantoms are made: 0.7 × 0.8 mm pixels (between rows first), slices 2 and 5 mm apart.
+  EXPECT_EQ(in.error().what,
+            folder.path().string() +
+                ": holds 2 series; choose one by its Series Instance UID (tractus import --series "
+                "UID, or series_uid of an upload): 2.25.314159265358979 (CT, 6 files, pixels 0.8 "
+                "× 0.7 mm, spacing 2 mm, thickness 2 mm); 2.25.5 (CT, 4 files, pixels 0.8 × 0.7 "
+                "mm, spacing 5 mm, thickness 5 mm)");
+}
+
+TEST(Dicom, AChosenSeriesIsReadAndTheOtherIsSaidToBeLeftOut) {
+  const Scratch folder;
+  write_two_series(folder.path());
+  for (const auto& [uid, volume, note] :
+       {std::tuple{"2.25.314159265358979", phantom(), "4 files of other series were left out"},
+        std::tuple{"2.25.5", thick(), "6 files of other series were left out"}}) {
+    const auto in = volume_io::read_volume(folder.path(), {.series_uid = uid});
+    expect_same(in, volume);
+    EXPECT_EQ(in->notes, std::vector<std::string>{note});
+  }
+}
+
+TEST(Dicom, AnUnknownSeriesIsRefusedWithAListOfThoseThatThereAre) {
+  const Scratch folder;
+  write_two_series(folder.path());
+  const auto in = volume_io::read_volume(folder.path(), {.series_uid = "2.25.6"});
+  ASSERT_FALSE(in);
+  expect_word(in.error().what, "holds no series 2.25.6; it holds 2.25.314159265358979 (CT, 6 files");
+  expect_word(in.error().what, "; 2.25.5 (CT, 4 files");
+  EXPECT_EQ(in.error().what.find('\n'), std::string::npos);
+}
+
+TEST(Dicom, DamageInASeriesThatIsNotChosenDoesNotMatter) {
+  const Scratch folder;
+  write_dicom_series(folder.path(), phantom());
+  const auto others =
+      write_dicom_series(folder.path(), thick(), {.series_uid = "2.25.5", .prefix = "other"});
+  overwrite(others[1], 0x7fe0, 0x0010, 8, kHuge);
+  expect_same(volume_io::read_volume(folder.path(), {.series_uid = "2.25.314159265358979"}),
+              phantom());
+  const auto in = volume_io::read_volume(folder.path(), {.series_uid = "2.25.5"});
+  ASSERT_FALSE(in);
+  expect_word(in.error().what, "element (7fe0,0010) at byte ");
 }
 
 TEST(Dicom, ASliceInTheSamePlaceTwiceIsRefused) {

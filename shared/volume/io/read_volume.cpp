@@ -32,6 +32,8 @@ core::Result<Imported> read_volume(const fs::path& path, const ReadOptions& opti
   const core::Progress& progress = options.progress;
   std::error_code failure;
   if (fs::is_directory(path, failure)) return read_dicom(path, options);
+  if (!options.series_uid.empty())
+    return bad(path, "a series is chosen from a folder or a zip of DICOM files, which this is not");
   const auto first = TRY(first_bytes(path, kLookAtBytes));
   const std::string_view text = core::text_of(first);
   if (text.starts_with("TRACTVOL")) return read_own(path, progress);
