@@ -175,7 +175,7 @@ TEST_F(Volumes, OfTwoSeriesInAZipTheCallerChoosesOne) {
 
   const auto none = bring("fay", zip);
   EXPECT_EQ(none.status, 400);
-  for (const char* word : {"the upload: holds 2 series", "2.25.3 (CT, 12 files", "spacing 6 mm"})
+  for (const char* word : {"the upload: holds 2 series", "2.25.3 (CT, 12 slices", "spacing 6 mm"})
     EXPECT_NE(text(none).find(word), std::string::npos) << text(none);
   EXPECT_EQ(text(none).find("Mustermann"), std::string::npos) << text(none);
   EXPECT_NE(text(bring_one("2.25.4")).find("holds no series 2.25.4; it holds 2.25.3 ("),

@@ -53,8 +53,7 @@ void print_text(const ImportOptions& o, const volume_io::Imported& in, const std
 
 Outcome run_import(const ImportOptions& o) {
   auto in = TRY(volume_io::read_volume(
-      o.source,
-      {.progress = core::terminal_progress("reading"), .series_uid = o.series_uid}));
+      o.source, {.progress = core::terminal_progress("reading"), .series_uid = o.series_uid}));
   for (auto& found : volume_io::text_suspicions(in.volume))
     in.suspicions.push_back(std::move(found));
   if (!o.report.empty()) TRY(core::write_json(o.report, in.report));

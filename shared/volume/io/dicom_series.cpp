@@ -7,11 +7,10 @@
 #include <cmath>
 #include <map>
 
-#include "core/file.hpp"
 #include "core/try.hpp"
 #include "volume/io/claims.hpp"
-#include "volume/io/dicom_layout.hpp"
-#include "volume/io/dicom_tags.hpp"
+#include "volume/io/dicom_files.hpp"
+#include "volume/io/dicom_frames.hpp"
 
 namespace tractus {
 namespace volume_io {
@@ -24,19 +23,22 @@ constexpr std::size_t kMostListed = 20;
 /// A file's texts by tag, of those that tell series apart.
 using Texts = std::map<std::uint32_t, std::string>;
 constexpr std::uint32_t kModalityTag = 0x00080060, kThickness = 0x00180050, kKernel = 0x00181210,
-                        kSeriesUid = 0x0020000e, kSeriesNumber = 0x00200011,
-                        kPlace = 0x00200032, kDirections = 0x00200037, kSpacing = 0x00280030;
+                        kSeriesUid = 0x0020000e, kSeriesNumber = 0x00200011, kPlace = 0x00200032,
+                        kDirections = 0x00200037, kSpacing = 0x00280030;
 constexpr std::array kTelling{kModalityTag,  kThickness, kKernel,     kSeriesUid,
                               kSeriesNumber, kPlace,     kDirections, kSpacing};
 
+std::string text_in(const Texts& texts, std::uint32_t tag) {
+  const auto found = texts.find(tag);
+  return found == texts.end() ? "" : found->second;
+}
+
 struct Member {
   fs::path path;
-  Texts texts;
+  Texts texts;                        ///< of the first slice
+  std::vector<double> places_mm;      ///< of each slice along its normal, where they are stated
   std::optional<core::Error> damage;  ///< by which no more of the file could be told
-  std::string text(std::uint32_t tag) const {
-    const auto found = texts.find(tag);
-    return found == texts.end() ? "" : found->second;
-  }
+  std::string text(std::uint32_t tag) const { return text_in(texts, tag); }
 };
 
 std::string without_padding(std::string_view text) {
@@ -44,18 +46,6 @@ std::string without_padding(std::string_view text) {
   const auto from = text.find_first_not_of(kPadding);
   if (from == std::string_view::npos) return {};
   return std::string(text.substr(from, text.find_last_not_of(kPadding) + 1 - from));
-}
-
-core::Result<Member> told(const fs::path& path) {
-  const auto file = TRY(core::read_file(path, kSliceLimitBytes));
-  Member out{path, {}, {}};
-  const auto layout = parse_dicom_layout(file, path, [&](const DicomElement& e) {
-    if (e.depth != 0 || std::ranges::find(kTelling, e.tag) == kTelling.end()) return;
-    const auto value = core::ByteView(file).subspan(e.value_at, e.end - e.value_at);
-    out.texts.try_emplace(e.tag, without_padding(core::text_of(value)));
-  });
-  if (!layout) out.damage = layout.error();
-  return out;
 }
 
 /// Of the characters in `allowed` alone and not over `most`; else empty: it may be anybody's words.
@@ -80,9 +70,9 @@ std::vector<double> decimals_of(const std::string& text, std::size_t count) {
 }
 
 /// Of a slice along its normal; NAN where the file states no position.
-double place_mm(const Member& member) {
-  const auto p = decimals_of(member.text(kPlace), 3);
-  const auto d = decimals_of(member.text(kDirections), 6);
+double place_mm(const Texts& texts) {
+  const auto p = decimals_of(text_in(texts, kPlace), 3);
+  const auto d = decimals_of(text_in(texts, kDirections), 6);
   if (p.empty() || d.empty()) return NAN;
   return Vec3(d[0], d[1], d[2]).cross(Vec3(d[3], d[4], d[5])).dot(Vec3(p[0], p[1], p[2]));
 }
@@ -98,12 +88,40 @@ double spacing_mm(std::vector<double> places) {
   return gaps[gaps.size() / 2];
 }
 
+core::Result<Member> told(DicomFiles& files, const fs::path& path) {
+  const auto file = TRY(files.read(path));
+  Member out{path, {}, {}, {}};
+  FunctionalGroups groups;
+  const auto text = [&](const DicomElement& e) {
+    const auto value = core::ByteView(file).subspan(e.value_at, e.end - e.value_at);
+    return without_padding(core::text_of(value));
+  };
+  const auto layout = parse_dicom_layout(file, path, [&](const DicomElement& e) {
+    groups.see(e);
+    if (e.depth != 0 || std::ranges::find(kTelling, e.tag) == kTelling.end()) return;
+    out.texts.try_emplace(e.tag, text(e));
+  });
+  if (!layout) out.damage = layout.error();
+  if (!groups.state_slices()) {
+    out.places_mm = {place_mm(out.texts)};
+    return out;
+  }
+  for (const auto& frame : groups.frames()) {
+    Texts texts;
+    for (const auto& [tag, e] : frame) texts.try_emplace(tag, text(e));
+    out.places_mm.push_back(place_mm(texts));
+    out.texts.insert(texts.begin(), texts.end());
+  }
+  return out;
+}
+
 using Members = std::vector<const Member*>;
 
 std::string described(const std::string& uid, const Members& members) {
   const Member& first = *members.front();
   std::vector<double> places;
-  for (const Member* member : members) places.push_back(place_mm(*member));
+  for (const Member* member : members)
+    places.insert(places.end(), member->places_mm.begin(), member->places_mm.end());
   std::string out = of_form(uid, "0123456789.", 64);
   if (out.empty()) out = "a UID that is not valid";
   out += " (";
@@ -112,7 +130,7 @@ std::string described(const std::string& uid, const Members& members) {
   if (const auto word = of_form(first.text(kModalityTag), "ABCDEFGHIJKLMNOPQRSTUVWXYZ", 16);
       !word.empty())
     out += word + ", ";
-  out += fmt::format("{} {}", members.size(), members.size() == 1 ? "file" : "files");
+  out += fmt::format("{} {}", places.size(), places.size() == 1 ? "slice" : "slices");
   if (const auto pixel = decimals_of(first.text(kSpacing), 2); !pixel.empty())
     out += fmt::format(", pixels {:.4g} × {:.4g} mm", pixel[0], pixel[1]);
   if (const double step = spacing_mm(places); std::isfinite(step))
@@ -131,7 +149,8 @@ using Groups = std::map<std::string, Members>;
 
 std::string list_of(const Groups& groups) {
   std::vector<std::pair<std::string, Members>> most(groups.begin(), groups.end());
-  std::ranges::stable_sort(most, std::ranges::greater{}, [](auto& one) { return one.second.size(); });
+  std::ranges::stable_sort(most, std::ranges::greater{},
+                           [](auto& one) { return one.second.size(); });
   std::string out;
   for (std::size_t i = 0; i < std::min(most.size(), kMostListed); ++i)
     out += (i ? "; " : "") + described(most[i].first, most[i].second);
@@ -144,7 +163,8 @@ std::string list_of(const Groups& groups) {
 core::Result<Listing> chosen_series(const Listing& listing, const std::string& series_uid,
                                     const fs::path& from) {
   std::vector<Member> members;
-  for (const fs::path& path : listing.files) members.push_back(TRY(told(path)));
+  DicomFiles files;
+  for (const fs::path& path : listing.files) members.push_back(TRY(told(files, path)));
   Groups groups;
   for (const Member& member : members) {
     const std::string uid = member.text(kSeriesUid);
