@@ -107,15 +107,17 @@ function csv(header: readonly string[], columns: readonly Float64Array[]): strin
   return `${lines.join('\n')}\n`;
 }
 
-const utf8 = (text: string) => new TextEncoder().encode(text);
-const json = (value: unknown) => utf8(`${JSON.stringify(value, null, 1)}\n`);
+const encoded = (text: string) => new TextEncoder().encode(text);
+const json = (value: unknown) => encoded(`${JSON.stringify(value, null, 1)}\n`);
 
 /** tractus-measurements/1 of one trial. */
 export function probingFiles({ t_s, columns, notes }: Trial): Record<string, Uint8Array> {
   const trial = { id: 'trial1', file: 'trial1.csv', operator: '', notes };
   return {
     'set.json': json({ format: 'tractus-measurements/1', rig: 'probing', trials: [trial] }),
-    'trial1.csv': utf8(csv(['t_s', ...columns.map(([name]) => name)], [t_s, ...columns.map(([, values]) => values)])),
+    'trial1.csv': encoded(
+      csv(['t_s', ...columns.map(([name]) => name)], [t_s, ...columns.map(([, values]) => values)]),
+    ),
   };
 }
 
@@ -202,8 +204,8 @@ export async function roomFiles(recording: Recording, room: Room, clock: Clock):
     trials: [{ id: 'trial1', motion: 'motion.csv', force: 'force.csv', operator: '', offset_s: 0 }],
   };
   return {
-    'motion.csv': utf8(motionCsv(bodies)),
-    'force.csv': utf8(csv(['t_s', 'fx_N', 'fy_N', 'fz_N', 'tx_Nm', 'ty_Nm', 'tz_Nm'], [force.t_s, ...force.values])),
+    'motion.csv': encoded(motionCsv(bodies)),
+    'force.csv': encoded(csv(['t_s', 'fx_N', 'fy_N', 'fz_N', 'tx_Nm', 'ty_Nm', 'tz_Nm'], [force.t_s, ...force.values])),
     'assembly.json': json(recipe),
   };
 }

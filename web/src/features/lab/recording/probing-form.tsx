@@ -7,7 +7,7 @@ import { formatCount, formatTime, second } from '@/units';
 import { kColumns, kUnits, missing, probingFiles, probingTrial, type Choices, type Chosen, type Column } from './made';
 import type { Clock, Recording } from './mcap';
 import styles from './recording.module.css';
-import { Sparkline } from './sparkline';
+import { ChannelPicture } from './channel-picture';
 import { zipped } from './zipped';
 
 const kMeanings = {
@@ -155,7 +155,7 @@ export function ProbingForm({ recording, clock, onAdded }: Props) {
       {lacking === null && trial.data ? (
         <>
           {trial.data.columns.map(([name, values]) => (
-            <Sparkline key={name} name={name} unit={kColumnUnits[name]} values={values} />
+            <ChannelPicture key={name} name={name} unit={kColumnUnits[name]} values={values} />
           ))}
           <p className={styles.unread}>
             {say(

@@ -62,7 +62,7 @@ const header = (t_s: number) => ({
   stamp: { sec: kStart_s + Math.floor(t_s), nanosec: Math.round((t_s - Math.floor(t_s)) * 1e9) },
   frame_id: 'rig',
 });
-const xyz = (x: number, y: number, z: number) => ({ x, y, z });
+const vector = (x: number, y: number, z: number) => ({ x, y, z });
 
 interface Sent {
   readonly topic: string;
@@ -74,13 +74,13 @@ function simulated(without: (sent: Sent) => boolean): Sent[] {
   const sent: Sent[] = [];
   for (let i = 0; i <= 1000; ++i) {
     const t_s = i / 1000;
-    const wrench = { force: xyz(0.1, 0.2, 2 - 3 * t_s), torque: xyz(0, 0, 0.02 * t_s) };
+    const wrench = { force: vector(0.1, 0.2, 2 - 3 * t_s), torque: vector(0, 0, 0.02 * t_s) };
     sent.push({ topic: '/force', t_s, message: { header: header(t_s), wrench } });
     if (i % 10 !== 5) continue;
     const joint = { name: ['turn', 'slide'], position: [0.5 * t_s, 0.01 * t_s], velocity: [], effort: [] };
     const turned = i % 20 === 5 ? joint : { ...joint, name: ['slide', 'turn'], position: [0.01 * t_s, 0.5 * t_s] };
     sent.push({ topic: '/joints', t_s, message: { header: header(t_s), ...turned } });
-    const pose = { position: xyz(t_s, 0, 1), orientation: { x: 0, y: 0, z: 0.6, w: 0.8 } };
+    const pose = { position: vector(t_s, 0, 1), orientation: { x: 0, y: 0, z: 0.6, w: 0.8 } };
     sent.push({ topic: '/probe', t_s, message: { header: header(t_s), pose } });
     sent.push({ topic: '/depth', t_s, message: { header: header(t_s), depth_mm: 10 * t_s } });
   }
@@ -274,16 +274,16 @@ describe('a set of the probing rig', () => {
   });
 
   it('is refused at a gap, which a part of the recording can leave out', async () => {
-    const gappy = await openRecording(
+    const withGap = await openRecording(
       fileOf(await written(({ topic: of, t_s }) => of === '/depth' && t_s > 0.4 && t_s < 0.6)),
     );
     const choices = {
-      x_m: chosen(gappy, '/depth', 'depth_mm', 'mm'),
-      fz_N: chosen(gappy, '/force', 'wrench.force.z', 'N'),
+      x_m: chosen(withGap, '/depth', 'depth_mm', 'mm'),
+      fz_N: chosen(withGap, '/force', 'wrench.force.z', 'N'),
     };
-    await expect(probingTrial(gappy, choices, kWhole)).rejects.toThrow(/^\/depth has a gap of 0\.210.s at 0\.145.s/);
+    await expect(probingTrial(withGap, choices, kWhole)).rejects.toThrow(/^\/depth has a gap of 0\.210.s at 0\.145.s/);
     // By the clock of the recording, which begins 0.25 s after the first stamp.
-    const part = await probingTrial(gappy, choices, { ...kWhole, to_s: 0.14 });
+    const part = await probingTrial(withGap, choices, { ...kWhole, to_s: 0.14 });
     expect(part.t_s.length).toBe(386); // from 0.005 s to 0.390 s of the force's stamps
   });
 

@@ -21,11 +21,11 @@ function outline(values: Float64Array, low: number, high: number): string {
 }
 
 /** A column over time, small, with its range. */
-export function Sparkline({ name, unit, values }: { name: string; unit: string; values: Float64Array }) {
+export function ChannelPicture({ name, unit, values }: { name: string; unit: string; values: Float64Array }) {
   const low = values.reduce((a, b) => Math.min(a, b), Infinity),
     high = values.reduce((a, b) => Math.max(a, b), -Infinity);
   return (
-    <figure className={styles.sparkline}>
+    <figure className={styles.picture}>
       <svg viewBox={`0 0 ${kWidth} ${kHeight}`} preserveAspectRatio="none" aria-hidden="true">
         <polyline points={outline(values, low, high)} />
       </svg>
