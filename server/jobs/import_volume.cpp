@@ -14,6 +14,8 @@ namespace fs = std::filesystem;
 using core::Json;
 using core::Result;
 
+constexpr const char* kUnpacked = "unpacked";  // within the folder: what a zip holds
+
 std::vector<double> numbers(const volume::Vec3& v) { return {v.x(), v.y(), v.z()}; }
 
 Json facts_of(const volume_io::Imported& in) {
@@ -42,7 +44,7 @@ std::string joined(const std::vector<std::string>& lines) {
 
 /// Paths of this machine are nobody's business: messages begin with "the upload".
 core::Error without_path(core::Error error, const fs::path& folder, const fs::path& upload) {
-  for (const std::string& path : {upload.string(), folder.string()})
+  for (const std::string& path : {upload.string(), (folder / kUnpacked).string(), folder.string()})
     for (std::size_t at; (at = error.what.find(path)) != std::string::npos;)
       error.what.replace(at, path.size(), "the upload");
   return error;
@@ -51,7 +53,7 @@ core::Error without_path(core::Error error, const fs::path& folder, const fs::pa
 Result<volume_io::Imported> read(const fs::path& upload, const fs::path& folder,
                                  const volume_io::ReadOptions& options) {
   if (!volume_io::is_zip(upload)) return volume_io::read_volume(upload, options);
-  const fs::path volume = TRY(volume_io::unpack_volume(upload, folder / "unpacked"));
+  const fs::path volume = TRY(volume_io::unpack_volume(upload, folder / kUnpacked));
   return volume_io::read_volume(volume, options);
 }
 
