@@ -26,9 +26,9 @@ namespace tractus::api {
 using Log = std::function<void(const core::Json& fields)>;
 
 /// Runs jobs::import_volume, in this process or in another one.
-using TakeVolume = std::function<core::Result<core::Json>(const std::filesystem::path& upload,
-                                                          const std::filesystem::path& folder,
-                                                          const std::array<std::byte, 32>& key)>;
+using TakeVolume = std::function<core::Result<core::Json>(
+    const std::filesystem::path& upload, const std::filesystem::path& folder,
+    const std::array<std::byte, 32>& key, const std::string& series_uid)>;
 
 class Oidc;
 class Notifier;

@@ -53,9 +53,15 @@ std::vector<char*> pointers(std::vector<std::string>& texts) {
   return out;
 }
 
-Result<pid_t> start(const fs::path& upload, const fs::path& folder, Pipe& in, Pipe& out) {
-  std::vector<std::string> words{"tractus-server", "import-volume", "--upload",
-                                 upload.string(),  "--folder",      folder.string()};
+std::vector<std::string> words_of(const fs::path& upload, const fs::path& folder,
+                                  const std::string& series_uid) {
+  std::vector<std::string> out{"tractus-server", "import-volume", "--upload",
+                               upload.string(),  "--folder",      folder.string()};
+  if (!series_uid.empty()) out.push_back("--series=" + series_uid);
+  return out;
+}
+
+Result<pid_t> start(std::vector<std::string> words, const fs::path& folder, Pipe& in, Pipe& out) {
   std::vector<std::string> environment = environment_in(folder);
   posix_spawn_file_actions_t actions;
   posix_spawnattr_t attributes;
@@ -98,10 +104,11 @@ void limit(int what, rlim_t most) {
 }  // namespace
 
 Result<Json> import_volume_in_subprocess(const fs::path& upload, const fs::path& folder,
-                                         const std::array<std::byte, 32>& key) {
+                                         const std::array<std::byte, 32>& key,
+                                         const std::string& series_uid) {
   Pipe in, out;
   if (!in.open() || !out.open()) return core::system_error("import-volume", "cannot open a pipe");
-  auto child = TRY(start(upload, folder, in, out));
+  auto child = TRY(start(words_of(upload, folder, series_uid), folder, in, out));
   in.shut(0), out.shut(1);
   const std::string text = core::hex(key);
   const bool told = ::write(in.ends[1], text.data(), text.size()) == ssize_t(text.size());
@@ -123,6 +130,8 @@ Run import_volume_command(CLI::App& command) {
   const auto upload = std::make_shared<fs::path>(), folder = std::make_shared<fs::path>();
   command.add_option("--upload", *upload, "File that was uploaded")->required();
   command.add_option("--folder", *folder, "Folder for the volume")->required();
+  const auto series_uid = std::make_shared<std::string>();
+  command.add_option("--series", *series_uid, "Series Instance UID of the series to read");
   return [=]() -> Result<int> {
     limit(RLIMIT_CORE, 0);
     limit(RLIMIT_CPU, 900);
@@ -132,7 +141,7 @@ Run import_volume_command(CLI::App& command) {
       return Error{Errc::bad_input, "standard input: 64 hexadecimal characters are expected"};
     volume_io::UidKey key{};
     std::ranges::copy(*core::hex_decoded(text), key.begin());
-    const auto taken = jobs::import_volume(*upload, *folder, key);
+    const auto taken = jobs::import_volume(*upload, *folder, key, *series_uid);
     const Json answer =
         taken ? *taken
               : Json{{"code", static_cast<int>(taken.error().code)}, {"error", taken.error().what}};

@@ -12,7 +12,8 @@ namespace tractus::app {
 /// bad_input when it ended without a word.
 core::Result<core::Json> import_volume_in_subprocess(const std::filesystem::path& upload,
                                                      const std::filesystem::path& folder,
-                                                     const std::array<std::byte, 32>& key);
+                                                     const std::array<std::byte, 32>& key,
+                                                     const std::string& series_uid);
 
 /// The child's side: the key as 64 hexadecimal characters on standard input, the answer as JSON on
 /// standard output.

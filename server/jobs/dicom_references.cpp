@@ -2,15 +2,14 @@
 
 #include <algorithm>
 
-#include "core/file.hpp"
 #include "core/try.hpp"
+#include "volume/io/dicom_files.hpp"
 #include "volume/io/dicom_layout.hpp"
 
 namespace tractus {
 namespace jobs {
 namespace {
 
-constexpr std::uint64_t kMostFile_bytes = 256ull << 20;
 constexpr std::uint32_t kClassUid = 0x00080016, kInstanceUid = 0x00080018;
 
 /// Digits and dots, without the padding.
@@ -21,9 +20,10 @@ std::string uid_of(std::string_view value) {
   return is_uid ? std::string(value) : "";
 }
 
-core::Result<InstanceReference> instance_in(const std::filesystem::path& path) {
+core::Result<InstanceReference> instance_in(volume_io::DicomFiles& files,
+                                            const std::filesystem::path& path) {
   const std::filesystem::path shown = path.filename();  // where it lies is nobody's business
-  const auto file = TRY(core::read_file(path, kMostFile_bytes));
+  const auto file = TRY(files.read(path));
   const std::string_view bytes = core::text_of(file);
   InstanceReference out;
   TRY(volume_io::parse_dicom_layout(file, shown, [&](const volume_io::DicomElement& element) {
@@ -46,7 +46,8 @@ core::Result<std::vector<InstanceReference>> instances_in(const std::filesystem:
   if (failure) return core::Error{core::Errc::io, "the series: " + failure.message()};
   std::ranges::sort(paths);
   std::vector<InstanceReference> out;
-  for (const auto& path : paths) out.push_back(TRY(instance_in(path)));
+  volume_io::DicomFiles files;
+  for (const auto& path : paths) out.push_back(TRY(instance_in(files, path)));
   return out;
 }
 

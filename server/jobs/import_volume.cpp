@@ -14,6 +14,8 @@ namespace fs = std::filesystem;
 using core::Json;
 using core::Result;
 
+constexpr const char* kUnpacked = "unpacked";  // within the folder: what a zip holds
+
 std::vector<double> numbers(const volume::Vec3& v) { return {v.x(), v.y(), v.z()}; }
 
 Json facts_of(const volume_io::Imported& in) {
@@ -42,25 +44,24 @@ std::string joined(const std::vector<std::string>& lines) {
 
 /// Paths of this machine are nobody's business: messages begin with "the upload".
 core::Error without_path(core::Error error, const fs::path& folder, const fs::path& upload) {
-  for (const std::string& path : {upload.string(), folder.string()})
+  for (const std::string& path : {upload.string(), (folder / kUnpacked).string(), folder.string()})
     for (std::size_t at; (at = error.what.find(path)) != std::string::npos;)
       error.what.replace(at, path.size(), "the upload");
   return error;
 }
 
 Result<volume_io::Imported> read(const fs::path& upload, const fs::path& folder,
-                                 const volume_io::UidKey& key) {
-  if (!volume_io::is_zip(upload))
-    return volume_io::read_volume(upload, volume_io::ReadOptions{.uid_key = key});
-  const fs::path volume = TRY(volume_io::unpack_volume(upload, folder / "unpacked"));
-  return volume_io::read_volume(volume, volume_io::ReadOptions{.uid_key = key});
+                                 const volume_io::ReadOptions& options) {
+  if (!volume_io::is_zip(upload)) return volume_io::read_volume(upload, options);
+  const fs::path volume = TRY(volume_io::unpack_volume(upload, folder / kUnpacked));
+  return volume_io::read_volume(volume, options);
 }
 
 }  // namespace
 
 Result<Json> import_volume(const fs::path& upload, const fs::path& folder,
-                           const volume_io::UidKey& key) {
-  auto in = read(upload, folder, key);
+                           const volume_io::UidKey& key, const std::string& series_uid) {
+  auto in = read(upload, folder, {.uid_key = key, .series_uid = series_uid});
   if (!in) return without_path(in.error(), folder, upload);
   // A note within a .tvol may be anybody's words.
   if (in->format == "tractus-volume/1") in->notes.clear();

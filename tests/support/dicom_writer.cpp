@@ -5,6 +5,7 @@
 #include <gdcmImageChangeTransferSyntax.h>
 #include <gdcmImageReader.h>
 #include <gdcmImageWriter.h>
+#include <gdcmSequenceOfFragments.h>
 #include <gdcmSequenceOfItems.h>
 #include <gdcmTrace.h>
 #include <gdcmWriter.h>
@@ -41,6 +42,24 @@ std::string decimals(const Vec3& v, double unit) {
   return fmt::format("{:.10g}\\{:.10g}\\{:.10g}", v.x() * unit, v.y() * unit, v.z() * unit);
 }
 
+/// A sequence with these items in `set`, of undefined lengths.
+void nest(gdcm::DataSet& set, std::uint16_t group, std::uint16_t element,
+          const std::vector<gdcm::DataSet>& items) {
+  gdcm::SmartPointer<gdcm::SequenceOfItems> sequence = new gdcm::SequenceOfItems;
+  sequence->SetLengthToUndefined();
+  for (const gdcm::DataSet& inner : items) {
+    gdcm::Item item;
+    item.SetVLToUndefined();
+    item.SetNestedDataSet(inner);
+    sequence->AddItem(item);
+  }
+  gdcm::DataElement nested(gdcm::Tag(group, element));
+  nested.SetVR(gdcm::VR::SQ);
+  nested.SetValue(*sequence);
+  nested.SetVLToUndefined();
+  set.Replace(nested);
+}
+
 void plant_patient(gdcm::DataSet& set) {
   text(set, 0x0010, 0x0010, gdcm::VR::PN, "Mustermann^Erika");
   text(set, 0x0010, 0x0020, gdcm::VR::LO, "PID-4711-0815");
@@ -50,17 +69,9 @@ void plant_patient(gdcm::DataSet& set) {
   text(set, 0x0008, 0x0050, gdcm::VR::SH, "ACC-99-1234");
   text(set, 0x0009, 0x0010, gdcm::VR::LO, "ACME");
   text(set, 0x0009, 0x1001, gdcm::VR::LO, "ACME private diary");
-  gdcm::SmartPointer<gdcm::SequenceOfItems> sequence = new gdcm::SequenceOfItems;
-  sequence->SetLengthToUndefined();
-  gdcm::Item item;
-  item.SetVLToUndefined();
-  text(item.GetNestedDataSet(), 0x0010, 0x0010, gdcm::VR::PN, "Mustermann^Erika^Referrer");
-  sequence->AddItem(item);
-  gdcm::DataElement nested(gdcm::Tag(0x0008, 0x1120));  // referenced patient sequence
-  nested.SetVR(gdcm::VR::SQ);
-  nested.SetValue(*sequence);
-  nested.SetVLToUndefined();
-  set.Replace(nested);
+  gdcm::DataSet referenced;
+  text(referenced, 0x0010, 0x0010, gdcm::VR::PN, "Mustermann^Erika^Referrer");
+  nest(set, 0x0008, 0x1120, {referenced});  // referenced patient sequence
 }
 
 void describe(gdcm::DataSet& set, const Volume& v, int k, const DicomSeries& series) {
@@ -107,6 +118,37 @@ void put_pixels(gdcm::DataSet& set, const Volume& v, int k, bool signed_pixels) 
   set.Replace(pixels);
 }
 
+/// Attributes of one file's `from` that move into a functional group (PS3.3 C.7.6.16.2).
+gdcm::DataSet taken_out(gdcm::DataSet& from, std::vector<gdcm::Tag> tags) {
+  gdcm::DataSet out;
+  for (const gdcm::Tag& tag : tags) {
+    if (!from.FindDataElement(tag)) continue;  // it was moved before
+    out.Replace(from.GetDataElement(tag));
+    from.Remove(tag);
+  }
+  return out;
+}
+
+/// The group of slice k, without what all slices share; `set` loses it.
+gdcm::DataSet own_group(gdcm::DataSet& set, bool with_scaling) {
+  gdcm::DataSet out, comments;
+  text(comments, 0x0020, 0x9158, gdcm::VR::LT, "Mustermann^Erika");
+  nest(out, 0x0020, 0x9111, {comments});  // frame content
+  nest(out, 0x0020, 0x9113, {taken_out(set, {{0x0020, 0x0032}})});
+  const auto scaling = taken_out(set, {{0x0028, 0x1052}, {0x0028, 0x1053}});
+  if (with_scaling) nest(out, 0x0028, 0x9145, {scaling});
+  return out;
+}
+
+gdcm::DataSet shared_group(gdcm::DataSet& set, bool with_scaling) {
+  gdcm::DataSet out;
+  nest(out, 0x0020, 0x9116, {taken_out(set, {{0x0020, 0x0037}})});
+  nest(out, 0x0028, 0x9110, {taken_out(set, {{0x0028, 0x0030}, {0x0018, 0x0050}})});
+  if (with_scaling)
+    nest(out, 0x0028, 0x9145, {taken_out(set, {{0x0028, 0x1052}, {0x0028, 0x1053}})});
+  return out;
+}
+
 /// Rewrites a file in another transfer syntax.
 void change_syntax(const fs::path& path, const std::string& uid) {
   gdcm::ImageReader reader;
@@ -145,6 +187,55 @@ std::vector<fs::path> write_dicom_series(const fs::path& folder, const Volume& v
       change_syntax(out.back(), series.transfer_syntax);
   }
   return out;
+}
+
+fs::path write_enhanced_ct(const fs::path& path, const Volume& v, const std::vector<int>& slices,
+                           const DicomSeries& series) {
+  gdcm::Trace::WarningOff();
+  const gdcm::TransferSyntax syntax(
+      gdcm::TransferSyntax::GetTSType(series.transfer_syntax.c_str()));
+  const fs::path classic = path.string() + ".classic";  // GDCM compresses there, slice by slice
+  const auto files = write_dicom_series(classic, v, series);
+  gdcm::Writer writer;
+  gdcm::DataSet& set = writer.GetFile().GetDataSet();
+  std::vector<gdcm::DataSet> groups;
+  std::string plain;
+  gdcm::SmartPointer<gdcm::SequenceOfFragments> fragments = new gdcm::SequenceOfFragments;
+  for (const int k : slices) {
+    gdcm::DataSet own;
+    describe(own, v, k, series);
+    groups.push_back(own_group(own, series.slope_drift != 0.0));
+    gdcm::Reader reader;
+    reader.SetFileName(files[static_cast<std::size_t>(k)].c_str());
+    core::require(reader.Read(), "what was just written can be read");
+    const auto& pixels = reader.GetFile().GetDataSet().GetDataElement(gdcm::Tag(0x7fe0, 0x0010));
+    if (syntax.IsEncapsulated()) {
+      fragments->AddFragment(pixels.GetSequenceOfFragments()->GetFragment(0));
+    } else {
+      const gdcm::ByteValue* bytes = pixels.GetByteValue();
+      plain.append(bytes->GetPointer(), bytes->GetLength());
+    }
+  }
+  fs::remove_all(classic);
+  describe(set, v, 0, series);
+  const gdcm::DataSet common = shared_group(set, series.slope_drift == 0.0);
+  own_group(set, false);
+  text(set, 0x0008, 0x0016, gdcm::VR::UI, "1.2.840.10008.5.1.4.1.1.2.1");  // enhanced CT image
+  text(set, 0x0028, 0x0008, gdcm::VR::IS, std::to_string(slices.size()));
+  nest(set, 0x5200, 0x9229, {common});
+  nest(set, 0x5200, 0x9230, groups);
+  plant_patient(set);
+  gdcm::DataElement pixels(gdcm::Tag(0x7fe0, 0x0010));
+  pixels.SetVR(syntax.IsEncapsulated() ? gdcm::VR::OB : gdcm::VR::OW);
+  if (syntax.IsEncapsulated())
+    pixels.SetValue(*fragments);
+  else
+    pixels.SetByteValue(plain.data(), static_cast<std::uint32_t>(plain.size()));
+  set.Replace(pixels);
+  writer.GetFile().GetHeader().SetDataSetTransferSyntax(syntax);
+  writer.SetFileName(path.c_str());
+  core::require(writer.Write(), "a test's DICOM file can be written");
+  return path;
 }
 
 }  // namespace test_support

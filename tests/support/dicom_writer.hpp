@@ -45,4 +45,13 @@ std::vector<std::filesystem::path> write_dicom_series(const std::filesystem::pat
                                                       const volume::Volume& volume,
                                                       const DicomSeries& series = {});
 
+/// Writes an enhanced CT, one file of the volume's `slices` in that order as its frames, and returns
+/// its path. Orientation, spacing and (without slope_drift) rescaling are shared by all frames, places
+/// are each frame's. The attributes planted are those of a series, and the patient's name in each
+/// frame's comments. `series.tilt_rad` and `prefix` are not used. A failure ends the test program.
+std::filesystem::path write_enhanced_ct(const std::filesystem::path& path,
+                                        const volume::Volume& volume,
+                                        const std::vector<int>& slices,
+                                        const DicomSeries& series = {});
+
 }  // namespace tractus::test_support

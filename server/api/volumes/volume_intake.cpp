@@ -40,21 +40,24 @@ Result<std::unique_lock<std::mutex>> turn_to_import(Turn turn) {
 
 /// @pre it is this import's turn
 Result<ImportedVolume> imported(const Backend& backend, const fs::path& upload,
-                                const fs::path& folder) {
+                                const fs::path& folder, const std::string& series_uid = "") {
   const volume_io::UidKey key = backend.secrets.uid_key();
-  auto answer = TRY(backend.import_volume ? backend.import_volume(upload, folder, key)
-                                          : jobs::import_volume(upload, folder, key));
+  auto answer = TRY(backend.import_volume ? backend.import_volume(upload, folder, key, series_uid)
+                                          : jobs::import_volume(upload, folder, key, series_uid));
   return kept(backend, folder, std::move(answer));
 }
 
 }  // namespace
 
 Result<ImportedVolume> take_in(const Call& call) {
+  const std::string& series_uid = call.text("series_uid");
+  if (series_uid.size() > 64 || series_uid.find_first_not_of("0123456789.") != std::string::npos)
+    return core::bad_input("series_uid: digits and dots are expected, at most 64");
   const auto held = TRY(turn_to_import(Turn::now));
   // On the data's disk: what a server that dies in the midst leaves there, the next start removes.
   auto scratch = TRY(core::ScratchFolder::make(call.backend.scratch->folder() / "volume"));
   const auto upload = TRY(body_in(call, scratch.path(), "upload"));
-  return imported(call.backend, upload, scratch.path());
+  return imported(call.backend, upload, scratch.path(), series_uid);
 }
 
 Result<ImportedVolume> take_in_series(const Backend& backend, const fs::path& series,

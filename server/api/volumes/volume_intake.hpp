@@ -15,8 +15,9 @@ struct ImportedVolume {
   core::Json facts, report;  ///< as jobs::import_volume answers
 };
 
-/// Reads and de-identifies the body of the call (Backend::import_volume) in a temporary folder, and
-/// stores the volume among the objects. Only one import runs at a time, because it needs the memory
+/// Reads and de-identifies the body of the call (Backend::import_volume; of several DICOM series
+/// the one with the call's `series_uid`) in a temporary folder, and stores the volume among the
+/// objects. Only one import runs at a time, because it needs the memory
 /// of a volume. Errors: unavailable while another import runs; those of jobs::import_volume.
 core::Result<ImportedVolume> take_in(const Call& call);
 /// Whether to wait while another import runs.

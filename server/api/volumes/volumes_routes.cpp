@@ -295,11 +295,16 @@ std::vector<RouteInfo> volumes_routes() {
   list.schemas = schemas();
   RouteInfo take =
       volumes_route("POST", "", "addVolume",
-                    "Upload a CT volume: a zip of one DICOM series, or a .nii.gz, .nrrd or "
-                    ".tvol file; the server de-identifies it and holds it for review",
+                    "Upload a CT volume: a zip of a DICOM series, or a .nii.gz, .nrrd or "
+                    ".tvol file; the server de-identifies it and holds it for review. A zip of "
+                    "several series is refused with a list of them, unless series_uid chooses one",
                     "Volume", add_volume);
   take.parameters = {text_in_query("name", "Name of the volume; must not contain a patient's name"),
-                     text_in_query("source", "Origin of the volume and its licence", false)};
+                     text_in_query("source", "Origin of the volume and its licence", false),
+                     text_in_query("series_uid",
+                                   "Series Instance UID of the DICOM series to read, one of "
+                                   "several in the zip",
+                                   false)};
   take.body = kBytes;
   take.body_limit_bytes = kMaxVolume_bytes;
   take.body_to_file = true;

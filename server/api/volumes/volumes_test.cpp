@@ -157,6 +157,37 @@ TEST_F(Volumes, ThePreviewIsTheMeanOfBlocks) {
   EXPECT_NEAR(static_cast<unsigned char>(text(block)[(3 * 8 + 2) * 10 + 1]), 30.15, 0.51);
 }
 
+TEST_F(Volumes, OfTwoSeriesInAZipTheCallerChoosesOne) {
+  volume::Volume thick = ramp();
+  thick.geometry.spacing_m.z() = 6e-3;
+  const fs::path folder = folder_.path() / "series";
+  std::map<std::string, std::string> files;
+  for (const auto& [volume, uid] : {std::pair{ramp(), "2.25.3"}, std::pair{thick, "2.25.6"}})
+    for (const auto& path :
+         test_support::write_dicom_series(folder, volume, {.series_uid = uid, .prefix = uid}))
+      files["Mustermann^Erika/" + path.filename().string()] = bytes_of_file(path);
+  const std::string zip = zip_of(files);
+  auto headers = as("fay");
+  headers["content-type"] = "application/octet-stream";
+  const auto bring_one = [&](const std::string& uid) {
+    return ask(request("POST", "/api/v1/volumes?name=L3&series_uid=" + uid, headers, zip));
+  };
+
+  const auto none = bring("fay", zip);
+  EXPECT_EQ(none.status, 400);
+  for (const char* word : {"the upload: holds 2 series", "2.25.3 (CT, 12 slices", "spacing 6 mm"})
+    EXPECT_NE(text(none).find(word), std::string::npos) << text(none);
+  EXPECT_EQ(text(none).find("Mustermann"), std::string::npos) << text(none);
+  EXPECT_NE(text(bring_one("2.25.4")).find("holds no series 2.25.4; it holds 2.25.3 ("),
+            std::string::npos);
+  EXPECT_NE(text(bring_one("a%20b")).find("series_uid: digits and dots"), std::string::npos);
+
+  const auto taken = bring_one("2.25.6");
+  ASSERT_EQ(taken.status, 201) << text(taken);
+  EXPECT_NEAR(json(taken)["spacing_m"][2].get<double>(), 6e-3, 1e-9);
+  EXPECT_EQ(json(taken)["notes"], core::Json({"12 files of other series were left out"}));
+}
+
 TEST_F(Volumes, AZippedNiftiIsRead) {
   const core::Bytes nifti = test_support::plain_nifti().bytes;
   const std::string file(core::text_of(nifti));

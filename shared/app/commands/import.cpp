@@ -16,7 +16,7 @@ namespace commands {
 namespace {
 
 struct ImportOptions {
-  std::string source, target, report;
+  std::string source, target, report, series_uid;
   bool json = false;
 };
 
@@ -52,7 +52,8 @@ void print_text(const ImportOptions& o, const volume_io::Imported& in, const std
 }
 
 Outcome run_import(const ImportOptions& o) {
-  auto in = TRY(volume_io::read_volume(o.source, core::terminal_progress("reading")));
+  auto in = TRY(volume_io::read_volume(
+      o.source, {.progress = core::terminal_progress("reading"), .series_uid = o.series_uid}));
   for (auto& found : volume_io::text_suspicions(in.volume))
     in.suspicions.push_back(std::move(found));
   if (!o.report.empty()) TRY(core::write_json(o.report, in.report));
@@ -70,10 +71,13 @@ Command import_command() {
           "tractus import spine.nii.gz spine.tvol", [](CLI::App& app) {
             auto options = std::make_shared<ImportOptions>();
             app.add_option("SRC", options->source,
-                           "NIfTI, NRRD or .tvol file, or folder of one DICOM series")
+                           "NIfTI, NRRD or .tvol file, or folder of DICOM files")
                 ->required();
             app.add_option("OUT", options->target, "file to write; an existing file is replaced")
                 ->required();
+            app.add_option("--series", options->series_uid,
+                           "Series Instance UID of the series to read, for a folder of several; "
+                           "without it such a folder is refused with a list of them");
             app.add_option("--report", options->report,
                            "file for the de-identification report: the action for each DICOM "
                            "attribute, without values");

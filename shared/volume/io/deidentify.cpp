@@ -17,6 +17,8 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr std::string_view kImplementation = "2.25.215483729648203171629455386409371520001";
+constexpr std::uint32_t kFrameCount = 0x00280008;
+constexpr std::size_t kMostDecimals = 512;  // bytes: six decimal strings have at most 101
 constexpr std::string_view kMethod = "Tractus: PS3.15 E.1-1 Basic, all but the geometry removed";
 
 bool is_private(std::uint32_t tag) { return (tag >> 16) % 2 == 1; }
@@ -76,6 +78,35 @@ core::Bytes element(std::uint32_t tag, std::string_view vr, std::string value, b
   return out;
 }
 
+/// Pixel data of one frame: as it lies in the file, or as one fragment behind an empty table.
+core::Bytes pixel_element(core::ByteView pixels, const DicomLayout& layout) {
+  const bool big = layout.big_endian;
+  const auto even = static_cast<std::uint32_t>(pixels.size() + pixels.size() % 2);
+  core::Bytes out;
+  const auto item = [&](std::uint32_t element, std::uint32_t length) {
+    put(out, 0xfffe, 2, big);
+    put(out, element, 2, big);
+    put(out, length, 4, big);
+  };
+  put(out, 0x7fe0, 2, big);
+  put(out, 0x0010, 2, big);
+  if (layout.with_vr) {
+    for (const char c : {'O', layout.compressed ? 'B' : 'W', '\0', '\0'})
+      out.push_back(static_cast<std::byte>(c));
+  }
+  put(out, layout.compressed ? 0xffffffffu : even, 4, big);
+  if (layout.compressed) item(0xe000, 0), item(0xe000, even);
+  out.insert(out.end(), pixels.begin(), pixels.end());
+  out.resize(out.size() + pixels.size() % 2);
+  if (layout.compressed) item(0xe0dd, 0);
+  return out;
+}
+
+bool is_decimals(std::string_view value) {
+  return value.find_first_not_of(std::string_view("0123456789+-.eE\\ \0", 18)) ==
+         std::string_view::npos;
+}
+
 std::string name_of(std::uint32_t tag) {
   const auto& dictionary = gdcm::Global::GetInstance().GetDicts().GetPublicDict();
   const char* name = dictionary
@@ -83,6 +114,11 @@ std::string name_of(std::uint32_t tag) {
                                                  static_cast<std::uint16_t>(tag & 0xffff)))
                          .GetName();
   return name ? name : "";
+}
+
+core::Error no_numbers(std::uint32_t tag, const fs::path& path) {
+  return bad(path, fmt::format("({:04x},{:04x}) {}: numbers are expected", tag >> 16, tag & 0xffff,
+                               name_of(tag)));
 }
 
 }  // namespace
@@ -112,6 +148,9 @@ struct Deidentifier::Writing {
   const DicomLayout& layout;
   std::map<std::uint32_t, core::Bytes> kept{};
   std::string storage_class = "1.2.840.10008.5.1.4.1.1.2", instance = "2.25.0";
+  bool by_frame = false;                 ///< pixels and places are each frame's
+  std::optional<DicomElement> pixels{};  ///< of all frames
+  std::string frames{};                  ///< their number, as the file states it
 
   std::string_view value(const DicomElement& e) const {
     return core::text_of(file.subspan(e.value_at, e.end - e.value_at));
@@ -202,35 +241,74 @@ core::Result<void> Deidentifier::take(const DicomElement& e, Writing& out) {
       break;
     }
     case Form::decimals:
-      if (value.find_first_not_of(std::string_view("0123456789+-.eE\\ \0", 18)) !=
-          std::string_view::npos)
-        return bad(out.path, fmt::format("({:04x},{:04x}) {}: numbers are expected", e.tag >> 16,
-                                         e.tag & 0xffff, name_of(e.tag)));
-      out.as_it_is(e);
+      if (!is_decimals(value)) return no_numbers(e.tag, out.path);
+      if (e.tag == kFrameCount) out.frames = trimmed(value);
+      if (!out.by_frame || e.tag != kFrameCount) out.as_it_is(e);
       break;
     case Form::two_bytes:
       if (value.size() != 2) return note(e, "removed"), core::Result<void>();
       out.as_it_is(e);
       break;
     case Form::pixels:
-      out.as_it_is(e);
+      if (out.by_frame)
+        out.pixels = e;
+      else
+        out.as_it_is(e);
   }
   return note(e, "kept"), core::Result<void>();
 }
 
-core::Result<core::Bytes> Deidentifier::cleaned(core::ByteView file, const fs::path& path) {
+core::Result<void> Deidentifier::cleaned_frames(const FunctionalGroups& groups, Writing& out,
+                                                const Keep& keep) {
+  const auto frames = groups.frames();
+  if (out.frames != std::to_string(frames.size()))
+    return bad(out.path, fmt::format("places for {} frames, which is not their number: {}",
+                                     frames.size(), kExportClassic));
+  if (!out.pixels) return bad(out.path, "no pixel data");
+  const auto pixels = TRY(frame_pixels(out.file, *out.pixels, out.layout, frames.size(), out.path));
+  const std::string instance = out.instance;
+  for (std::size_t n = 0; n < frames.size(); ++n) {
+    const auto say = [&](std::uint32_t tag, const char* vr, std::string_view value) {
+      out.kept[tag] =
+          element(tag, vr, std::string(value), out.layout.with_vr, out.layout.big_endian);
+    };
+    for (const auto& [tag, e] : frames[n]) {
+      const std::string_view value = out.value(e);
+      if (!is_decimals(value) || value.size() > kMostDecimals) return no_numbers(tag, out.path);
+      say(tag, "DS", trimmed(value));
+    }
+    out.instance = replaced_uid(instance + "." + std::to_string(n + 1), key_);
+    say(0x00080018, "UI", out.instance);
+    out.kept[0x7fe00010] = pixel_element(pixels[n], out.layout);
+    TRY(keep(n + 1, out.whole()));
+    for (const auto& [tag, e] : frames[n]) out.kept.erase(tag);
+  }
+  return {};
+}
+
+core::Result<void> Deidentifier::cleaned(core::ByteView file, const fs::path& path,
+                                         const Keep& keep) {
   std::vector<DicomElement> elements;
-  const auto layout =
-      TRY(parse_dicom_layout(file, path, [&](const DicomElement& e) { elements.push_back(e); }));
+  FunctionalGroups groups;
+  const auto layout = TRY(parse_dicom_layout(file, path, [&](const DicomElement& e) {
+    elements.push_back(e);
+    groups.see(e);
+  }));
   Writing out{file, path, layout};
-  for (const DicomElement& e : elements) TRY(take(e, out));
+  out.by_frame = groups.state_slices();
+  for (const DicomElement& e : elements) {
+    if (out.by_frame && groups.is_value(e))
+      note(e, "kept");
+    else
+      TRY(take(e, out));
+  }
   const auto say = [&](std::uint32_t tag, const char* vr, std::string_view value) {
     out.kept[tag] = element(tag, vr, std::string(value), layout.with_vr, layout.big_endian);
   };
   say(0x00120062, "CS", "YES");
   say(0x00120063, "LO", kMethod);
   ++files_;
-  return out.whole();
+  return out.by_frame ? cleaned_frames(groups, out, keep) : keep(0, out.whole());
 }
 
 core::Json Deidentifier::report() const {

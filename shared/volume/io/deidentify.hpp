@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <set>
 #include <string>
@@ -10,7 +11,7 @@
 #include "core/bytes.hpp"
 #include "core/json.hpp"
 #include "core/result.hpp"
-#include "volume/io/dicom_layout.hpp"
+#include "volume/io/dicom_frames.hpp"
 #include "volume/io/uid_key.hpp"
 
 namespace tractus::volume_io {
@@ -22,11 +23,17 @@ class Deidentifier {
  public:
   explicit Deidentifier(const UidKey& key) : key_(key) {}
 
+  /// Takes a slice; `frame` counts from 1 in a file of several, and is 0 in a file of one.
+  using Keep = std::function<core::Result<void>(std::size_t frame, core::ByteView slice)>;
+
   /// The file written anew in its own transfer syntax: an empty preamble, the meta information a
   /// reader needs, what is kept of the data set, and that it was de-identified (0012,0062 and
-  /// 0012,0063). Errors: those of parse_dicom_layout; bad_input for a kept attribute whose value is
-  /// not of its form. No message holds a value.
-  core::Result<core::Bytes> cleaned(core::ByteView file, const std::filesystem::path& path);
+  /// 0012,0063). A file whose functional groups state slices becomes a file for each of them, with
+  /// the frame's place and scaling as its own. Errors: those of parse_dicom_layout and `keep`;
+  /// bad_input for a kept attribute whose value is not of its form, and for frames whose places or
+  /// pixels cannot be told apart. No message holds a value.
+  core::Result<void> cleaned(core::ByteView file, const std::filesystem::path& path,
+                             const Keep& keep);
 
   /// "tractus-deidentification/1": {"format","profile","codes" (of PS3.16 CID 7050),"files",
   /// "attributes":[{"tag","name","vr","profile" (the table's action, "" when not listed),"done"
@@ -42,6 +49,7 @@ class Deidentifier {
   };
   struct Writing;
   core::Result<void> take(const DicomElement& element, Writing& out);
+  core::Result<void> cleaned_frames(const FunctionalGroups& groups, Writing& out, const Keep& keep);
   void suspect(const DicomElement& element, std::string_view value);
   void note(const DicomElement& element, const char* done);
 

@@ -12,7 +12,8 @@
 #include "volume/io/claims.hpp"
 #include "volume/io/counts.hpp"
 #include "volume/io/deidentify.hpp"
-#include "volume/io/dicom_slices.hpp"
+#include "volume/io/dicom_files.hpp"
+#include "volume/io/dicom_series.hpp"
 #include "volume/io/dicom_tags.hpp"
 #include "volume/io/formats.hpp"
 #include "volume/io/gantry_tilt.hpp"
@@ -62,17 +63,29 @@ core::Result<Counts> read_voxels(const Series& series, const fs::path& folder) {
   return counts;
 }
 
-/// Copies without the patient, by the same names.
+core::Result<void> write_copy(const fs::path& path, core::ByteView bytes) {
+  std::ofstream copy(path, std::ios::binary);
+  copy.write(reinterpret_cast<const char*>(bytes.data()),
+             static_cast<std::streamsize>(bytes.size()));
+  copy.close();
+  if (!copy) return core::system_error(path, "cannot write");
+  return {};
+}
+
+/// Copies without the patient, by the same names, one for each slice.
 core::Result<void> clean(const Listing& listing, const fs::path& into, Deidentifier& deidentifier,
                          const core::Progress& progress) {
+  DicomFiles files;
+  std::size_t slices = 0;
   for (std::size_t i = 0; i < listing.files.size(); ++i) {
-    const auto file = TRY(core::read_file(listing.files[i], kSliceLimitBytes));
-    auto cleaned = TRY(deidentifier.cleaned(file, listing.files[i]));
-    std::ofstream copy(into / listing.files[i].filename(), std::ios::binary);
-    copy.write(reinterpret_cast<const char*>(cleaned.data()),
-               static_cast<std::streamsize>(cleaned.size()));
-    copy.close();
-    if (!copy) return core::system_error(into, "cannot write");
+    const std::string name = listing.files[i].filename().string();
+    const auto file = TRY(files.read(listing.files[i]));
+    TRY(deidentifier.cleaned(
+        file, listing.files[i], [&](std::size_t frame, core::ByteView slice) -> core::Result<void> {
+          if (++slices > kMostSlices) return too_many_slices(listing.files[i]);
+          return write_copy(into / (frame ? fmt::format("{} frame {:04}", name, frame) : name),
+                            slice);
+        }));
     if (progress &&
         !progress(0.5 * static_cast<double>(i + 1) / static_cast<double>(listing.files.size())))
       return core::Error{core::Errc::cancelled, "reading was stopped"};
@@ -108,15 +121,21 @@ core::Result<Imported> read_series(const fs::path& folder, const core::Progress&
   return out;
 }
 
-core::Result<Imported> read_cleaned(const fs::path& folder, const fs::path& copies,
-                                    const UidKey& key, const core::Progress& progress) {
-  const auto listing = TRY(list_series(folder));
-  Deidentifier deidentifier(key);
+core::Result<Imported> read_cleaned(const fs::path& path, const fs::path& copies,
+                                    const ReadOptions& options, const core::Progress& progress) {
+  const bool one_file = !fs::is_directory(path);
+  const fs::path folder = !one_file ? path : path.has_parent_path() ? path.parent_path() : ".";
+  const auto found = one_file ? Listing{.files = {path}} : TRY(list_series(path));
+  const auto listing = TRY(chosen_series(found, options.series_uid, path));
+  Deidentifier deidentifier(options.uid_key);
   TRY(clean(listing, copies, deidentifier, progress));
   auto out = read_series(copies, progress);
   if (!out) return with_path_of(folder, copies, out.error());
   if (listing.others > 0)
     out->notes.push_back(fmt::format("{} other files in the folder were left out", listing.others));
+  if (listing.other_series > 0)
+    out->notes.push_back(
+        fmt::format("{} files of other series were left out", listing.other_series));
   out->suspicions = deidentifier.suspicions();
   out->report = deidentifier.report();
   return out;
@@ -124,15 +143,15 @@ core::Result<Imported> read_cleaned(const fs::path& folder, const fs::path& copi
 
 }  // namespace
 
-core::Result<Imported> read_dicom(const fs::path& folder, const ReadOptions& options) {
+core::Result<Imported> read_dicom(const fs::path& path, const ReadOptions& options) {
   std::error_code failure;
   const fs::path temporary = fs::temp_directory_path(failure);
   if (failure) return core::Error{core::Errc::io, "there is no folder for temporary files"};
   auto copies = TRY(core::ScratchFolder::make(temporary / "tractus-dicom"));
   return isolated(
-      folder,
+      path,
       [&](const core::Progress& passed_on) {
-        return read_cleaned(folder, copies.path(), options.uid_key, passed_on);
+        return read_cleaned(path, copies.path(), options, passed_on);
       },
       options.progress);
 }

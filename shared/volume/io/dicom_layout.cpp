@@ -4,6 +4,7 @@
 
 #include <array>
 #include <string_view>
+#include <utility>
 
 #include "core/try.hpp"
 #include "volume/io/claims.hpp"
@@ -57,7 +58,7 @@ class Walk {
   Walk(core::ByteView file, const fs::path& path, const ElementSeen& seen)
       : file_(file), path_(path), seen_(seen) {}
 
-  core::Result<DicomLayout> run() {
+  core::Result<DicomMeta> meta() {
     std::size_t at = 132;
     while (at + 4 <= file_.size() && u16(at, false) == 0x0002) {
       auto element = TRY(next(at, file_.size(), true, false));
@@ -68,8 +69,13 @@ class Walk {
       at = element.value_at + element.length;
       tell(element, at, -1);
     }
+    return DicomMeta{layout_.transfer_syntax, at};
+  }
+
+  core::Result<DicomLayout> run() {
+    const auto read = TRY(meta());
     TRY(choose_syntax());
-    TRY(elements(at, file_.size(), explicit_, 0, false));
+    TRY(elements(read.end, file_.size(), explicit_, 0, false));
     return layout_;
   }
 
@@ -94,15 +100,12 @@ class Walk {
         layout_.big_endian = big_;
         return {};
       }
-    return bad(path_, fmt::format("transfer syntax \"{}\" is not read{}",
-                                  printable(layout_.transfer_syntax),
-                                  layout_.transfer_syntax == "1.2.840.10008.1.2.1.99"
-                                      ? " (deflated; inflate it first)"
-                                      : ""));
+    return bad(path_, fmt::format("transfer syntax \"{}\" is not read",
+                                  printable(layout_.transfer_syntax)));
   }
 
   void tell(const Element& e, std::size_t end, int depth) const {
-    if (seen_) seen_({e.tag, e.vr, e.at, e.value_at, end, depth});
+    if (seen_) seen_({e.tag, e.vr, e.at, e.value_at, end, depth, item_at_});
   }
 
   core::Error lie(const Element& e, std::size_t left) const {
@@ -190,8 +193,10 @@ class Walk {
         continue;
       }
       const bool open_item = item.length == kUndefined;
+      const std::size_t outer = std::exchange(item_at_, item.at);
       auto inner = TRY(elements(item.value_at, open_item ? end : item.value_at + item.length,
                                 with_vr, depth, open_item));
+      item_at_ = outer;
       at = inner;
     }
     if (open) return bad(path_, fmt::format("a sequence has no end before byte {}", end));
@@ -223,6 +228,7 @@ class Walk {
   DicomLayout layout_;
   bool explicit_ = true, big_ = false;
   int fragments_ = 0;
+  std::size_t item_at_ = 0;
 };
 
 std::uint32_t be(core::ByteView bytes, std::size_t at, std::size_t size) {
@@ -236,6 +242,11 @@ std::uint32_t be(core::ByteView bytes, std::size_t at, std::size_t size) {
 
 bool looks_like_dicom(core::ByteView file) {
   return file.size() >= 132 && core::text_of(file.subspan(128, 4)) == "DICM";
+}
+
+core::Result<DicomMeta> parse_dicom_meta(core::ByteView file, const fs::path& path) {
+  const ElementSeen nobody;
+  return Walk(file, path, nobody).meta();
 }
 
 core::Result<DicomLayout> parse_dicom_layout(core::ByteView file, const fs::path& path,

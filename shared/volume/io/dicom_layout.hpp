@@ -30,11 +30,20 @@ struct DicomElement {
   std::size_t value_at = 0;  ///< of its value, or of its first item
   std::size_t end = 0;       ///< one beyond it, closing items included
   int depth = 0;             ///< 0: of the data set itself; -1: of the file's meta information
+  std::size_t item_at = 0;   ///< of the sequence's item that holds it; 0 at depth 0
 };
 using ElementSeen = std::function<void(const DicomElement&)>;
 
 /// Has it the preamble and "DICM" of PS3.10?
 bool looks_like_dicom(core::ByteView file);
+
+/// A file's meta information (PS3.10 section 7.1), which no transfer syntax deflates.
+struct DicomMeta {
+  std::string transfer_syntax;
+  std::size_t end = 0;  ///< offset at which the data set begins
+};
+/// Errors: bad_input naming the element and the length it claims.
+core::Result<DicomMeta> parse_dicom_meta(core::ByteView file, const std::filesystem::path& path);
 
 /// Walks every element and sequence and holds each length against what is left of the file.
 /// Errors: bad_input naming the element, its offset and the length it claims; a transfer syntax we

@@ -24,6 +24,11 @@ constexpr double kMaxTilt_rad = 45.0 * std::numbers::pi / 180.0;
 
 }  // namespace
 
+core::Error too_many_slices(const fs::path& path) {
+  return {core::Errc::too_large, fmt::format("{}: over {} DICOM slices, at most so many are taken",
+                                             path.string(), kMostSlices)};
+}
+
 core::Result<Listing> list_series(const fs::path& folder) {
   Listing out;
   std::error_code failure;
@@ -36,9 +41,7 @@ core::Result<Listing> list_series(const fs::path& folder) {
       out.files.push_back(it->path());
     else
       ++out.others;
-    if (out.files.size() > 4096)
-      return core::Error{core::Errc::too_large,
-                         folder.string() + ": over 4096 DICOM files, at most so many are taken"};
+    if (out.files.size() > kMostSlices) return too_many_slices(folder);
   }
   if (failure)
     return core::Error{core::Errc::io,
@@ -78,7 +81,8 @@ core::Result<void> check_alike(const std::vector<Slice>& slices) {
 core::Result<Vec3> even_step(std::vector<Slice>& slices, const Vec3& normal,
                              const fs::path& folder) {
   std::ranges::sort(slices, {}, [&](const Slice& s) { return s.position_m.dot(normal); });
-  if (slices.size() < 2) return bad(folder, "one slice alone: at least two are expected");
+  if (slices.size() < 2)
+    return bad(folder, "one slice alone: give the folder that holds the series");
   std::vector<double> gaps;
   for (std::size_t i = 1; i < slices.size(); ++i)
     gaps.push_back((slices[i].position_m - slices[i - 1].position_m).dot(normal));

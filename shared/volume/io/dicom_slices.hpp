@@ -36,10 +36,14 @@ struct Series {
   std::vector<std::string> notes;
 };
 
+inline constexpr std::size_t kMostSlices = 4096;  ///< of a series
+core::Error too_many_slices(const std::filesystem::path& path);
+
 /// The files of a folder, not of folders in it.
 struct Listing {
   std::vector<std::filesystem::path> files;  ///< DICOM, sorted by name
-  std::size_t others = 0;
+  std::size_t others = 0;                    ///< files that are no DICOM
+  std::size_t other_series = 0;              ///< DICOM files of series that are not read
 };
 /// Errors: bad_input when none is DICOM, io, too_large (over 4096).
 core::Result<Listing> list_series(const std::filesystem::path& folder);

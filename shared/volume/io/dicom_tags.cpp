@@ -16,7 +16,7 @@
 #include "core/file.hpp"
 #include "core/try.hpp"
 #include "volume/io/claims.hpp"
-#include "volume/io/dicom_layout.hpp"
+#include "volume/io/dicom_frames.hpp"
 
 namespace tractus {
 namespace volume_io {
@@ -106,9 +106,6 @@ void read_pixels(Attributes& tags, Slice& slice, const DicomLayout& layout, core
     tags.wrong(
         fmt::format("photometric interpretation \"{}\": MONOCHROME2 of one sample is expected",
                     printable(tags.text(kPhotometric))));
-  if (const auto frames = tags.text(kFrames); !frames.empty() && frames != "1")
-    tags.wrong(
-        fmt::format("{} frames in one file: one slice per file is expected", printable(frames)));
   if (slice.bits != 8 && slice.bits != 16)
     tags.wrong(fmt::format("{} bits allocated: 8 or 16 are expected", slice.bits));
   if (slice.rows < 1 || slice.rows > 4096 || slice.columns < 1 || slice.columns > 4096)
@@ -171,6 +168,9 @@ core::Result<Slice> read_slice_tags(const fs::path& path) {
   out.series = tags.text(kSeries);
   out.modality = tags.text(kModality);
   if (out.series.empty()) tags.wrong("no series instance UID");
+  if (const auto frames = tags.text(kFrames); !frames.empty() && frames != "1")
+    tags.wrong(fmt::format("{} frames in one file, which states no place for each: {}",
+                           printable(frames), kExportClassic));
   read_geometry(tags, out);
   read_pixels(tags, out, layout, file);
   if (tags.has(kSlope)) out.slope = tags.decimals(kSlope, "rescale slope", 1)[0];

@@ -11,6 +11,7 @@
 #include "tests/support/dicom_writer.hpp"
 #include "tests/support/scratch.hpp"
 #include "volume/io/dicom_layout.hpp"
+#include "volume/io/dicom_test_support.hpp"
 #include "volume/io/read_volume.hpp"
 
 namespace tractus {
@@ -20,39 +21,11 @@ using test_support::Scratch;
 using test_support::write_dicom_series;
 using volume::Vec3;
 using volume::Volume;
+using volume_io::testing::expect_same;
+using volume_io::testing::expect_word;
+using volume_io::testing::phantom;
+using volume_io::testing::thick;
 namespace fs = std::filesystem;
-
-/// Simulated: a slanted gradient with a bright ball, 24 × 20 × 6, oblique; counts 0 … about 3000,
-/// HU = count − 1024.
-Volume phantom() {
-  Volume v;
-  v.geometry.dims = {24, 20, 6};
-  v.geometry.spacing_m = {0.7e-3, 0.8e-3, 2e-3};
-  v.geometry.origin_m = {-0.1, 0.05, 0.3};
-  v.geometry.directions = Eigen::AngleAxisd(0.2, Vec3(1, 1, 0).normalized()).toRotationMatrix();
-  v.intercept = -1024.0;
-  for (int k = 0; k < 6; ++k)
-    for (int j = 0; j < 20; ++j)
-      for (int i = 0; i < 24; ++i) {
-        const bool ball = (i - 12) * (i - 12) + (j - 8) * (j - 8) + 4 * (k - 3) * (k - 3) < 30;
-        v.counts.push_back(
-            static_cast<std::uint16_t>(11 * i + 7 * j + 131 * k + (ball ? 2000 : 0)));
-      }
-  return v;
-}
-
-void expect_same(const core::Result<volume_io::Imported>& in, const Volume& v) {
-  ASSERT_TRUE(in) << in.error().what;
-  const auto &got = in->volume.geometry, &want = v.geometry;
-  ASSERT_EQ(got.dims, want.dims);
-  EXPECT_LT((got.spacing_m - want.spacing_m).norm(), 1e-9);
-  EXPECT_LT((got.origin_m - want.origin_m).norm(), 1e-8);
-  EXPECT_LT((got.directions - want.directions).norm(), 1e-6);
-  for (int k = 0; k < want.dims[2]; ++k)
-    for (int j = 0; j < want.dims[1]; ++j)
-      for (int i = 0; i < want.dims[0]; ++i)
-        ASSERT_EQ(in->volume.value(i, j, k), v.value(i, j, k)) << i << ' ' << j << ' ' << k;
-}
 
 class DicomSyntax : public testing::TestWithParam<test_support::Syntax> {};
 
@@ -144,10 +117,6 @@ std::string refusal(const std::function<void(const fs::path&, const std::vector<
   return in.error().what;
 }
 
-void expect_word(const std::string& message, const std::string& word) {
-  EXPECT_NE(message.find(word), std::string::npos) << message;
-}
-
 /// Overwrites bytes of a file after the first place where `tag` stands, explicit little-endian.
 void overwrite(const fs::path& path, std::uint16_t group, std::uint16_t element, std::size_t skip,
                const core::Bytes& with) {
@@ -173,11 +142,60 @@ TEST(Dicom, AMissingSliceIsRefusedNamingItsNeighbours) {
   expect_word(message, neighbour + " lie 4 mm apart, the others 2 mm");
 }
 
-TEST(Dicom, TwoSeriesInAFolderAreRefused) {
-  const auto message = refusal([](const fs::path& folder, const auto&) {
-    write_dicom_series(folder, phantom(), {.series_uid = "2.25.5", .prefix = "other"});
-  });
-  expect_word(message, "belongs to another series than im");
+/// The phantom as series 2.25.314159265358979, and as 2.25.5 with 4 thick slices of it, in one folder.
+void write_two_series(const fs::path& folder) {
+  write_dicom_series(folder, phantom());
+  write_dicom_series(folder, thick(), {.series_uid = "2.25.5", .prefix = "other"});
+}
+
+TEST(Dicom, TwoSeriesInAFolderAreRefusedWithAListOfThem) {
+  const Scratch folder;
+  write_two_series(folder.path());
+  const auto in = volume_io::read_volume(folder.path());
+  ASSERT_FALSE(in);
+  // As the phantoms are made: 0.7 × 0.8 mm pixels (between rows first), slices 2 and 5 mm apart.
+  EXPECT_EQ(in.error().what,
+            folder.path().string() +
+                ": holds 2 series; choose one by its Series Instance UID (tractus import --series "
+                "UID, or series_uid of an upload): 2.25.314159265358979 (CT, 6 slices, pixels 0.8 "
+                "× 0.7 mm, spacing 2 mm, thickness 2 mm); 2.25.5 (CT, 4 slices, pixels 0.8 × 0.7 "
+                "mm, spacing 5 mm, thickness 5 mm)");
+}
+
+TEST(Dicom, AChosenSeriesIsReadAndTheOtherIsSaidToBeLeftOut) {
+  const Scratch folder;
+  write_two_series(folder.path());
+  for (const auto& [uid, volume, note] :
+       {std::tuple{"2.25.314159265358979", phantom(), "4 files of other series were left out"},
+        std::tuple{"2.25.5", thick(), "6 files of other series were left out"}}) {
+    const auto in = volume_io::read_volume(folder.path(), {.series_uid = uid});
+    expect_same(in, volume);
+    EXPECT_EQ(in->notes, std::vector<std::string>{note});
+  }
+}
+
+TEST(Dicom, AnUnknownSeriesIsRefusedWithAListOfThoseThatThereAre) {
+  const Scratch folder;
+  write_two_series(folder.path());
+  const auto in = volume_io::read_volume(folder.path(), {.series_uid = "2.25.6"});
+  ASSERT_FALSE(in);
+  expect_word(in.error().what,
+              "holds no series 2.25.6; it holds 2.25.314159265358979 (CT, 6 slices");
+  expect_word(in.error().what, "; 2.25.5 (CT, 4 slices");
+  EXPECT_EQ(in.error().what.find('\n'), std::string::npos);
+}
+
+TEST(Dicom, DamageInASeriesThatIsNotChosenDoesNotMatter) {
+  const Scratch folder;
+  write_dicom_series(folder.path(), phantom());
+  const auto others =
+      write_dicom_series(folder.path(), thick(), {.series_uid = "2.25.5", .prefix = "other"});
+  overwrite(others[1], 0x7fe0, 0x0010, 8, kHuge);
+  expect_same(volume_io::read_volume(folder.path(), {.series_uid = "2.25.314159265358979"}),
+              phantom());
+  const auto in = volume_io::read_volume(folder.path(), {.series_uid = "2.25.5"});
+  ASSERT_FALSE(in);
+  expect_word(in.error().what, "element (7fe0,0010) at byte ");
 }
 
 TEST(Dicom, ASliceInTheSamePlaceTwiceIsRefused) {

@@ -4,6 +4,7 @@
 
 #include "core/try.hpp"
 #include "volume/io/claims.hpp"
+#include "volume/io/dicom_tags.hpp"
 #include "volume/io/formats.hpp"
 #include "volume/volume_file.hpp"
 
@@ -31,14 +32,14 @@ core::Result<Imported> read_volume(const fs::path& path, const core::Progress& p
 core::Result<Imported> read_volume(const fs::path& path, const ReadOptions& options) {
   const core::Progress& progress = options.progress;
   std::error_code failure;
-  if (fs::is_directory(path, failure)) return read_dicom(path, options);
+  if (fs::is_directory(path, failure) || is_dicom_file(path)) return read_dicom(path, options);
+  if (!options.series_uid.empty())
+    return bad(path, "a series is chosen from a folder or a zip of DICOM files, which this is not");
   const auto first = TRY(first_bytes(path, kLookAtBytes));
   const std::string_view text = core::text_of(first);
   if (text.starts_with("TRACTVOL")) return read_own(path, progress);
   if (text.starts_with("NRRD000")) return read_nrrd(path, progress);
   if (looks_like_nifti(first)) return read_nifti(path, progress);
-  if (text.size() >= 132 && text.substr(128, 4) == "DICM")
-    return bad(path, "one DICOM file; give the folder that holds the series");
   return bad(path, fmt::format("starts with \"{}\", which is no NIfTI, NRRD, DICOM or .tvol file",
                                printable(std::string(text.substr(0, 16)))));
 }

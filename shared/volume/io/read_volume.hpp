@@ -28,6 +28,8 @@ struct Imported {
 struct ReadOptions {
   UidKey uid_key{};  ///< for the identifiers of a DICOM series
   core::Progress progress = {};
+  /// Series Instance UID of the DICOM series to read; empty: the only one of the folder.
+  std::string series_uid = {};
 };
 
 /// Reads a NIfTI (.nii, .nii.gz), NRRD (.nrrd, .nhdr with its data beside it), DICOM series (a
@@ -35,7 +37,8 @@ struct ReadOptions {
 /// metres; values are kept exactly where they are whole numbers over a range of at most 65535, and
 /// else in 65536 levels, with a note saying so. The file's claims are checked against its size
 /// before any library sees it, and before memory is taken for them. A DICOM series is de-identified
-/// first (deidentify.hpp); of the others nothing but geometry, scaling and voxels is read. Errors:
+/// first (deidentify.hpp); of the others nothing but geometry, scaling and voxels is read. A folder
+/// of several series is refused with a list of them, unless one is chosen. Errors:
 /// not_found, io, bad_input (one line: file, place, what is wrong, what is expected), too_large,
 /// cancelled.
 core::Result<Imported> read_volume(const std::filesystem::path& path,

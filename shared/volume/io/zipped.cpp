@@ -26,7 +26,7 @@ using core::Errc;
 using core::Error;
 using core::Result;
 
-constexpr int kMostSlices = 4096, kMostEntries = 16384;
+constexpr int kMostDicom = 4096, kMostEntries = 16384;
 constexpr std::uint64_t kMost_bytes = 4ull << 30, kAlways_bytes = 64ull << 20;
 constexpr std::uint64_t kMostRatio = 100;
 constexpr std::size_t kHead_bytes = 540;  // NIfTI-2's header, the longest by which a kind is known
@@ -94,9 +94,9 @@ class Unpacking {
       head.insert(head.end(), part.begin(), part.end());
     }
     if (looks_like_dicom(head)) {
-      if (++slices_ > kMostSlices)
+      if (++slices_ > kMostDicom)
         return Error{Errc::too_large,
-                     fmt::format("{}: over {} DICOM files", zip_.string(), kMostSlices)};
+                     fmt::format("{}: over {} DICOM files", zip_.string(), kMostDicom)};
       return write(head, into_ / fmt::format("{:06}.dcm", slices_));
     }
     if (!looks_like_volume_file(head) || ++files_ > 1) return {};

@@ -1,11 +1,19 @@
 import { useMutation, useQuery, useQueryClient } from '@tanstack/react-query';
+import { lazy, Suspense, useState } from 'react';
 import { addMeasurements, measurementsQuery, type MeasurementSet } from '@/api';
 import { say, Sentence } from '@/language';
-import { Badge, Card, DropZone, Notice, Term, type Dropped } from '@/ui';
+import { Badge, Card, DropZone, Notice, Skeleton, Term, type Dropped } from '@/ui';
 import { formatCount, formatDateTime, isoDateTime } from '@/units';
 import styles from './lab.module.css';
 import { setFacts } from './names';
 import { pack, problemsOf } from './zip-files';
+
+/** With the readers of recordings, which few visits need. */
+const RecordingForm = lazy(() => import('./recording/recording-form'));
+
+/** The one MCAP recording that was dropped. */
+const recordingIn = ([only, ...others]: readonly Dropped[]) =>
+  only && others.length === 0 && /\.mcap$/i.test(only.file.name) ? only.file : null;
 
 interface Props {
   readonly chosen: string | null;
@@ -69,15 +77,18 @@ function SetRow({
 export function SetsCard({ chosen, choose }: Props) {
   const client = useQueryClient();
   const query = useQuery(measurementsQuery);
+  const [recording, setRecording] = useState<File | null>(null);
+  const onAdded = async (set: MeasurementSet) => {
+    setRecording(null);
+    await client.invalidateQueries({ queryKey: measurementsQuery.queryKey });
+    choose(set.id);
+  };
   const sent = useMutation({
     mutationFn: async (files: readonly Dropped[]) => {
       const { name, zip } = await pack(files);
       return addMeasurements(name, zip);
     },
-    onSuccess: async (set) => {
-      await client.invalidateQueries({ queryKey: measurementsQuery.queryKey });
-      choose(set.id);
-    },
+    onSuccess: onAdded,
   });
   const sets = query.data?.measurements;
   return (
@@ -86,13 +97,18 @@ export function SetsCard({ chosen, choose }: Props) {
         <DropZone
           label={say('New measurements')}
           folder={say('A folder with set.json')}
-          files={say('A zip file, or set.json with its CSV files')}
-          choose={say('Choose zip file')}
-          onFiles={(files) => sent.mutate(files)}
+          files={say('A zip file, set.json with its CSV files, or an .mcap recording')}
+          choose={say('Choose file')}
+          onFiles={(files) => {
+            const dropped = recordingIn(files);
+            setRecording(dropped);
+            sent.reset();
+            if (!dropped) sent.mutate(files);
+          }}
           busy={sent.isPending ? say('Packing, uploading and checking the files…') : null}
         >
           <Sentence
-            text="Drop a folder or a zip file here: <code>set.json</code> and one CSV file per trial, in the format <term>tractus-measurements/1</term>."
+            text="Drop a folder or a zip file here: <code>set.json</code> and one CSV file per trial, in the format <term>tractus-measurements/1</term>. Or an <code>.mcap</code> recording, as ROS 2 writes it."
             parts={{
               code: (words) => <code>{words}</code>,
               term: (words) => (
@@ -107,6 +123,16 @@ export function SetsCard({ chosen, choose }: Props) {
             }}
           />
         </DropZone>
+        {recording ? (
+          <Suspense fallback={<Skeleton height="120px" />}>
+            <RecordingForm
+              key={`${recording.name} ${recording.size}`}
+              file={recording}
+              onAdded={(set) => void onAdded(set)}
+              onClose={() => setRecording(null)}
+            />
+          </Suspense>
+        ) : null}
         {sent.isError ? <Problems message={sent.error.message} /> : null}
         {query.isError ? (
           <Notice tone="bad" title={say('The list could not be loaded.')} onRetry={() => void query.refetch()}>

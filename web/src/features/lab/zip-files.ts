@@ -1,7 +1,8 @@
 /** Files that were dropped, as the one zip that the server takes. */
-import { zip, type AsyncZippable } from 'fflate';
+import type { AsyncZippable } from 'fflate';
 import { say } from '@/language';
 import type { Dropped } from '@/ui';
+import { zipped } from './recording/zipped';
 
 export interface Packed {
   readonly name: string;
@@ -19,15 +20,6 @@ export function rootOf(paths: readonly string[]): string | null {
     .filter((path) => path === 'set.json' || path.endsWith('/set.json'))
     .sort((a, b) => a.split('/').length - b.split('/').length)[0];
   return found === undefined ? null : found.slice(0, -'set.json'.length);
-}
-
-function zipped(files: AsyncZippable): Promise<Uint8Array<ArrayBuffer>> {
-  return new Promise((resolve, reject) => {
-    zip(files, { level: 3, consume: true }, (failure, data) => {
-      if (failure) reject(failure);
-      else resolve(data as Uint8Array<ArrayBuffer>);
-    });
-  });
 }
 
 /** The name that set.json itself gives, for files that were dropped without their folder. */

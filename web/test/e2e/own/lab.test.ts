@@ -62,7 +62,7 @@ describe.skipIf(bin === undefined)('a set with a hidden effect', () => {
     const good = readFileSync(join(served.folder, 'set/measurements/trial1.csv'), 'utf8').split('\n');
     good[16] = good[16]?.replace(/,[^,]*$/, ',abc') ?? '';
     const choosing = page.waitForEvent('filechooser');
-    await page.getByRole('button', { name: 'Choose zip file' }).click();
+    await page.getByRole('button', { name: 'Choose file' }).click();
     await (
       await choosing
     ).setFiles([
@@ -239,7 +239,7 @@ describe.skipIf(bin === undefined)('a set with a hidden effect', () => {
     const told = JSON.parse(readFileSync(join(set, 'measurements/set.json'), 'utf8')) as Record<string, unknown>;
     await page.goto('/lab');
     const choosing = page.waitForEvent('filechooser');
-    await page.getByRole('button', { name: 'Choose zip file' }).click();
+    await page.getByRole('button', { name: 'Choose file' }).click();
     const named = (name: string, buffer: Buffer) => ({ name, mimeType: 'application/octet-stream', buffer });
     await (
       await choosing
