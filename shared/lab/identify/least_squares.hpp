@@ -52,7 +52,7 @@ struct Solution {
   double judged = 0.0;  ///< residuals that are not exactly 0: of those the structure says
                         ///< nothing (dry friction at rest)
 
-  mutable Eigen::VectorXd held_out_squares;  ///< see held_out_squares(); empty until asked for
+  mutable Eigen::VectorXd held_out_squares;    ///< see held_out_squares(); empty until asked for
   mutable std::optional<bool> told_from_zero;  ///< see told_from_zero(); empty until asked for
 
   /// Mean of ρ over what is judged: about 1 when all is explained.

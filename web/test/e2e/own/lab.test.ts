@@ -1,8 +1,9 @@
 /** The whole way through the model lab on a set with a hidden effect, against a real server. */
 import { execFileSync, spawnSync } from 'node:child_process';
 import { join } from 'node:path';
-import { readFileSync } from 'node:fs';
+import { readFileSync, writeFileSync } from 'node:fs';
 import { fileURLToPath } from 'node:url';
+import { McapWriter } from '@mcap/core';
 import type { Browser, Page } from 'playwright-core';
 import { afterAll, beforeAll, describe, expect, it } from 'vitest';
 import { kShots, launch } from '../browser';
@@ -14,6 +15,46 @@ const kPicture = fileURLToPath(new URL('../../../src/features/guide/pictures/res
 
 /** "1.99 N" → 1.99 */
 const newtons = (text: string) => Number(/([\d.]+)\s*N/.exec(text.replaceAll('\u202f', ' '))?.[1] ?? Number.NaN);
+
+/** A trial's rows as a robot records them: depth in mm and force on topics of their own, as JSON. SIMULATED. */
+async function writeMcap(csv: string, path: string): Promise<void> {
+  const [head = '', ...rows] = readFileSync(csv, 'utf8').trim().split('\n');
+  const column = (name: string) => head.split(',').indexOf(name);
+  const parts: Uint8Array[] = [];
+  let length = 0n;
+  const writer = new McapWriter({
+    writable: {
+      position: () => length,
+      write: (bytes: Uint8Array) => {
+        parts.push(bytes.slice());
+        length += BigInt(bytes.length);
+        return Promise.resolve();
+      },
+    },
+  });
+  await writer.start({ profile: '', library: 'test' });
+  const channel = (topic: string) =>
+    writer.registerChannel({ schemaId: 0, topic, messageEncoding: 'json', metadata: new Map() });
+  const slide = await channel('/slide'),
+    wrench = await channel('/wrench');
+  for (const [sequence, row] of rows.entries()) {
+    const cells = row.split(',').map(Number);
+    const at = (name: string) => cells[column(name)] ?? Number.NaN;
+    const logTime = 1_700_000_000_000_000_000n + BigInt(Math.round(at('t_s') * 1e9));
+    const send = (channelId: number, message: unknown) =>
+      writer.addMessage({
+        channelId,
+        sequence,
+        logTime,
+        publishTime: logTime,
+        data: new TextEncoder().encode(JSON.stringify(message)),
+      });
+    await send(slide, { depth_mm: 1000 * at('x_m') });
+    await send(wrench, { force: at('fz_N') });
+  }
+  await writer.end();
+  writeFileSync(path, Buffer.concat(parts));
+}
 
 describe.skipIf(bin === undefined)('a set with a hidden effect', () => {
   let browser: Browser, served: Served, page: Page, token: string;
@@ -79,6 +120,25 @@ describe.skipIf(bin === undefined)('a set with a hidden effect', () => {
     await row.waitFor();
     expect((await row.getByRole('cell').allInnerTexts())[1]).toBe('17');
     await shot('refused');
+  }, 60_000);
+
+  it('is made from a recording of ROS 2 by choosing its fields', async () => {
+    const path = join(served.folder, 'stroke.mcap');
+    await writeMcap(join(served.folder, 'set/measurements/trial1.csv'), path);
+    await page.goto('/lab');
+    const choosing = page.waitForEvent('filechooser');
+    await page.getByRole('button', { name: 'Choose file' }).click();
+    await (await choosing).setFiles(path);
+    const form = page.getByRole('region', { name: 'Recording stroke.mcap' });
+    await form.getByLabel('Field of x_m').selectOption({ label: '/slide depth_mm' });
+    await form.getByRole('group', { name: /x_m/ }).getByLabel('Recorded in').selectOption('mm');
+    await form.getByLabel('Field of fz_N').selectOption({ label: '/wrench force' });
+    await form.getByText('at the stamps of the force').waitFor();
+    await shot('recording');
+    await form.getByRole('button', { name: 'Add to the measurements' }).click();
+    await page.getByRole('radio', { name: /stroke/ }).waitFor();
+    expect(await page.getByRole('radio', { name: /stroke/ }).isChecked()).toBe(true);
+    expect(await page.locator('label').filter({ hasText: 'stroke' }).innerText()).toContain('1 trial');
   }, 60_000);
 
   it('leads from the files to a better model whose error is at the noise floor', async () => {
