@@ -262,7 +262,8 @@ bool told_from_zero(const Residual& residual, const Solution& solution) {
   Gram whole = gram(at, weights, 0, residual.size());
   add_prior(at, whole);
   const Eigen::VectorXd variances = known_of(residual, at, weights, whole).variances;
-  const auto candidates = std::ranges::count_if(residual.problem().candidates(), &Candidate::possible);
+  const auto candidates =
+      std::ranges::count_if(residual.problem().candidates(), &Candidate::possible);
   const double least = statistics::student_t_quantile(
       1.0 - 0.5 * kValidation.found_by_chance / double(std::max<std::ptrdiff_t>(1, candidates)),
       double(folds_of(residual).size()) - 1.0);
