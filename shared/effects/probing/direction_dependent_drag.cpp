@@ -40,7 +40,7 @@ ProbingEffectInfo direction_dependent_drag() {
                   {.name = "mean_Ns_per_m",
                    .meaning =
                        "m, mean of the drag on the way in and out, beside the layers' damping",
-                   .initial = 100.0,
+                   .initial = 10.0,
                    .low = -1e5,
                    .high = 1e5,
                    .if_missing = 0.0}},

@@ -7,6 +7,7 @@
 #include <random>
 
 #include "lab/identify/fit.hpp"
+#include "lab/settings.hpp"
 #include "models/palpation_runtime.hpp"
 
 namespace tractus {
@@ -160,7 +161,9 @@ TEST_P(AHiddenEffect, IsFoundBackWithItsNumbers) {
     if (e.pointer.starts_with("/") || e.pointer.ends_with("bends_shank")) continue;
     EXPECT_NEAR(e.value, use.values[next], std::max(0.05 * std::abs(use.values[next]), 3.0 * e.sd))
         << e.pointer;
-    EXPECT_LT(e.sd, 0.25 * std::abs(use.values[next])) << e.pointer;
+    // Before it is widened for what all trials have in common, of which these have nothing.
+    EXPECT_LT(e.sd / kSettings.validation.common_errors, 0.25 * std::abs(use.values[next]))
+        << e.pointer;
     ++next;
   }
 }
