@@ -146,9 +146,13 @@ std::string printed_diagnosis(const lab_io::LabResult& answer) {
   const lab::Diagnosis& d = *answer.content.diagnosis;
   const std::string unit = lab::name_and_unit(answer.json.value("primary", std::string())).unit;
   const lab::StatedVerdict& stated = *answer.content.stated;
-  std::string out = fmt::format("{}\n{}\nProbability that this is right: {}.\n\n  {}{}{}\n",
-                                stated.headline, stated.detail, percent(stated.probability),
-                                left("model", 30), right("error", 12), right("held out", 13));
+  const std::string probability =
+      std::isfinite(stated.probability)
+          ? fmt::format("Probability that this is right: {}.\n", percent(stated.probability))
+          : "";
+  std::string out =
+      fmt::format("{}\n{}\n{}\n  {}{}{}\n", stated.headline, stated.detail, probability,
+                  left("model", 30), right("error", 12), right("held out", 13));
   for (const lab::Step& step : d.steps)
     out += "  " +
            left(step.model.starts_with("+ ") ? "+ " + effects::label_of(step.model.substr(2))

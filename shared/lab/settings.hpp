@@ -257,6 +257,8 @@ struct ScreenSettings {
 struct DriftOnMotionSettings {
   /// Time constants of the motion's memory that is held against the drift. Physical.
   std::array<double, 3> memories_s{0.5, 2.0, 8.0};
+  /// Plays whose side tells the direction of the last motion, as shares of the way's range. Physical.
+  std::array<double, 2> play_shares{0.001, 0.01};
   /// Moments of a trial that are compared. Bound.
   std::size_t rows_per_trial = 400;
 };

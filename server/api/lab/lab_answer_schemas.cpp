@@ -147,7 +147,7 @@ Json diagnosis_schema() {
        {"verdict", text("the verdict on the torque alone")},
        {"headline", text("that verdict as a sentence")},
        {"detail", text("a sentence with its figures")},
-       {"probability", share("probability of that answer")},
+       {"probability", nullable(share("probability of that answer; null: undecided"))},
        {"base", base},
        {"effects", array(effect, "effects that are missing about the probe's axis")},
        {"ranking", array(ref("RankedEffect"), "candidates about the axis, most probable first")},
@@ -156,12 +156,13 @@ Json diagnosis_schema() {
        {"rest_explained", optional(share("share of the residual that recorded signals explain"))}});
   return object(
       {{"format", text("tractus-diagnosis/1")},
-       {"verdict", one_of({"complete", "missing", "partly", "unexplained"},
+       {"verdict", one_of({"complete", "missing", "partly", "unexplained", "undecided"},
                           "complete: the model is at the noise floor; missing: the effects below "
-                          "bring it there; partly: they explain a part; unexplained: none does")},
+                          "bring it there; partly: they explain a part; unexplained: none does; "
+                          "undecided: the noise hides what might be missing")},
        {"headline", optional(text("the verdict as a sentence"))},
        {"detail", optional(text("a sentence with the figures of the verdict"))},
-       {"probability", share("probability of this answer")},
+       {"probability", nullable(share("probability of this answer; null: undecided"))},
        {"base", base},
        {"effects", array(effect, "effects that are missing")},
        {"ranking", array(ref("RankedEffect"), "all candidates, most probable first")},

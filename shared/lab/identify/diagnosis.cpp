@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "lab/identify/fit_report.hpp"
 #include "lab/identify/residual_dependence.hpp"
@@ -123,6 +124,12 @@ double probability_of_more(const Problem& problem, const ResidualDependence& res
                                odds.per_share * predicted_share(rest)));
 }
 
+/// How much of the force is noise, or an error of the motion.
+double floor_share(const Problem& problem, const Fit& fit) {
+  const double measured = problem.channels().front().measured_rms;
+  return measured > 0.0 ? fit.noise_floor / measured : 0.0;
+}
+
 /// Do the effects take away most of what there was to take?
 bool explain_most(const ResidualDependence& rest, const Fit& base, const Fit& fit) {
   const auto square = [](double v) { return v * v; };
@@ -136,6 +143,8 @@ double stated_probability(const Diagnosis& d, double more, double posterior) {
   if (d.effects.size() >= kAnswer.imitating_effects) more = std::max(more, kAnswer.imitation);
   more = std::clamp(more, kSettings.posterior.unforeseen, 1.0 - kSettings.posterior.unforeseen);
   switch (d.verdict) {
+    case Verdict::undecided:
+      return std::numeric_limits<double>::quiet_NaN();
     case Verdict::unexplained:
       return more;
     case Verdict::partly:
@@ -174,10 +183,12 @@ Result<Diagnosis> diagnose(const Problem& problem, const DiagnoseOptions& option
   const bool more = probability_of_more(problem, rest, out.final_fit) > 0.5;
   const bool named = !chosen.structure.effects.empty() &&
                      (!more || explain_most(rest, out.base_fit, out.final_fit));
+  out.floor_share = floor_share(problem, out.final_fit);
   const bool imitating = named && chosen.structure.effects.size() >= kAnswer.imitating_effects;
   out.verdict = named  ? more || imitating ? Verdict::partly : Verdict::missing
                 : more ? Verdict::unexplained
-                       : Verdict::complete;
+                : out.floor_share > kAnswer.undecided_share ? Verdict::undecided
+                                                            : Verdict::complete;
   if (!named && !chosen.structure.effects.empty()) {
     out.final_fit = out.base_fit;
     rest = residual_dependence(residual, selection.base());
@@ -202,9 +213,9 @@ Result<Diagnosis> diagnose(const Problem& problem, const DiagnoseOptions& option
   out.dependence_explained = predicted_share(rest);
   if (!selection.refused().empty())
     out.notes.push_back(
-        fmt::format("{} would bring the residual to the floor, but what it takes out follows the "
-                    "motion before: "
-                    "something with a slow memory is missing that is in no catalogue",
+        fmt::format("{} was left out: what it would take out of the residual follows the motion, "
+                    "so it is no trend of "
+                    "the sensor's own",
                     selection.refused()));
   out.ranking = ranking(residual, selection, posterior);
   if (options.detection_limits)

@@ -17,13 +17,15 @@ enum class Verdict {
   missing,      ///< the effects found explain the rest
   partly,       ///< effects found, more remains
   unexplained,  ///< something is missing that is not in the catalogue
+  undecided,  ///< nothing is seen to be missing, but so much of the force is noise that it says little
 };
 constexpr auto words(Verdict) {
   using enum Verdict;
   return std::to_array<core::Word<Verdict>>({{complete, "complete"},
                                              {missing, "missing"},
                                              {partly, "partly"},
-                                             {unexplained, "unexplained"}});
+                                             {unexplained, "unexplained"},
+                                             {undecided, "undecided"}});
 }
 using core::name;
 
@@ -81,11 +83,13 @@ struct DiscriminatingExperiment {
 struct Diagnosis {
   Verdict verdict = Verdict::complete;
   /// That the set of effects named (or none) is right; of `partly` and `unexplained`, that more is
-  /// missing than the catalogue names.
+  /// missing than the catalogue names; of `undecided` not a number.
   double probability = 0.0;
   struct {
     double rmse = 0.0, held_out_rmse = 0.0, noise_floor = 0.0;
   } base;
+  double floor_share =
+      0.0;  ///< noise floor of the final fit over the root mean square of the force; 0: not known
   std::vector<FoundEffect> effects;
   std::vector<Ranked> ranking;  ///< most probable first; the whole catalogue
   std::vector<Step> steps;

@@ -2,8 +2,8 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <span>
 
 #include "lab/identify/effect_screen.hpp"
 #include "lab/settings.hpp"
@@ -15,15 +15,48 @@ namespace lab {
 namespace {
 
 constexpr const auto& kDrift = kSettings.drift_on_motion;
+constexpr auto kSignals = Eigen::Index(kDrift.memories_s.size() + 2 + kDrift.play_shares.size());
 
-/// One trial's trend, and the memories of its speed as slow as a trend may be.
-struct Slow {
-  Eigen::VectorXd trend;
-  Eigen::MatrixXd memories;  // [row][memory], the last column 1
+/// How far a position has run ahead of a play that follows it, −1 … 1: the direction of the last motion.
+std::vector<double> direction_of_last_motion(std::span<const double> x_m, double play_m) {
+  std::vector<double> out;
+  double follows_m = x_m.front();
+  for (const double x : x_m) {
+    follows_m = std::clamp(follows_m, x - 0.5 * play_m, x + 0.5 * play_m);
+    out.push_back(play_m > 0.0 ? 2.0 * (x - follows_m) / play_m : 0.0);
+  }
+  return out;
+}
+
+/// What a slow law may follow: memories of the speed, the position and its square, and the direction of the last motion.
+std::vector<std::vector<double>> signals_of(std::span<const double> t_s,
+                                            std::span<const double> x_m,
+                                            std::span<const double> v_m_s) {
+  std::vector<std::vector<double>> out;
+  for (const double time_s : kDrift.memories_s) out.push_back(fading_memory(t_s, v_m_s, time_s));
+  out.emplace_back(x_m.begin(), x_m.end());
+  out.push_back(out.back());
+  for (double& square : out.back()) square *= square;
+  const auto [least, most] = std::ranges::minmax(x_m);
+  for (const double share : kDrift.play_shares)
+    out.push_back(direction_of_last_motion(x_m, share * (most - least)));
+  return out;
+}
+
+const std::vector<double>* state(const States& states, std::string_view name) {
+  const auto found = std::ranges::find(states.names, name);
+  return found == states.names.end() ? nullptr
+                                     : &states.values[std::size_t(found - states.names.begin())];
+}
+
+/// One trial's trend, and the trends of those signals, at some moments.
+struct Trends {
+  Eigen::VectorXd fitted;
+  Eigen::MatrixXd of_motion;  // [row][signal], the last column 1
 };
 
-Slow slow_of(const Problem& problem, const Solution& at, std::string_view effect,
-             const std::vector<double>& v_m_s, int trial) {
+Trends trends_of(const Problem& problem, const Solution& at, std::string_view effect,
+                 std::span<const double> x_m, std::span<const double> v_m_s, int trial) {
   const Structure less = minus(at.structure, effect);
   const Residuals with = problem.full_rate(at.structure, at.values, trial),
                   without = problem.full_rate(less, at.values, trial);
@@ -38,12 +71,12 @@ Slow slow_of(const Problem& problem, const Solution& at, std::string_view effect
     for (Eigen::Index r = 0; r < rows; ++r) out(r) = value(std::size_t(r) * stride);
     return out;
   };
-  Slow out{thinned([&](std::size_t k) { return without.channels[0][k] - with.channels[0][k]; }),
-           Eigen::MatrixXd::Ones(rows, Eigen::Index(kDrift.memories_s.size()) + 1)};
-  for (std::size_t m = 0; m < kDrift.memories_s.size(); ++m) {
-    const auto left = fading_memory(with.t_s, v_m_s, kDrift.memories_s[m]);
-    const Eigen::VectorXd raw = thinned([&](std::size_t k) { return left[k]; });
-    out.memories.col(Eigen::Index(m)) = trends.at(t_s, trends.fit(raw));
+  Trends out{thinned([&](std::size_t k) { return without.channels[0][k] - with.channels[0][k]; }),
+             Eigen::MatrixXd::Ones(rows, kSignals + 1)};
+  Eigen::Index column = 0;
+  for (const auto& signal : signals_of(with.t_s, x_m, v_m_s)) {
+    const Eigen::VectorXd raw = thinned([&](std::size_t k) { return signal[k]; });
+    out.of_motion.col(column++) = trends.at(t_s, trends.fit(raw));
   }
   return out;
 }
@@ -53,24 +86,23 @@ Slow slow_of(const Problem& problem, const Solution& at, std::string_view effect
 double drift_r2_on_motion(const Residual& residual, const Solution& at, std::string_view effect) {
   const Problem& problem = residual.problem();
   if (!contains(at.structure, effect)) return 0.0;
-  constexpr auto kColumns = Eigen::Index(kDrift.memories_s.size()) + 1;
-  Eigen::MatrixXd a = Eigen::MatrixXd::Zero(kColumns, kColumns);
-  Eigen::VectorXd b = Eigen::VectorXd::Zero(kColumns);
+  Eigen::MatrixXd a = Eigen::MatrixXd::Zero(kSignals + 1, kSignals + 1);
+  Eigen::VectorXd b = Eigen::VectorXd::Zero(kSignals + 1);
   double squares = 0.0;
   for (int k = 0; k < problem.trials(); ++k) {
     const States states = problem.states(k);
-    const auto speed = std::ranges::find(states.names, "velocity_m_s");
-    if (speed == states.names.end()) return 0.0;
-    const Slow slow =
-        slow_of(problem, at, effect, states.values[std::size_t(speed - states.names.begin())], k);
-    a += slow.memories.transpose() * slow.memories;
-    b += slow.memories.transpose() * slow.trend;
-    squares += slow.trend.squaredNorm();
+    const auto *x_m = state(states, "depth_m"), *v_m_s = state(states, "velocity_m_s");
+    if (x_m == nullptr || v_m_s == nullptr) return 0.0;
+    const Trends trends = trends_of(problem, at, effect, *x_m, *v_m_s, k);
+    a += trends.of_motion.transpose() * trends.of_motion;
+    b += trends.of_motion.transpose() * trends.fitted;
+    squares += trends.fitted.squaredNorm();
   }
-  const double mean = b(kColumns - 1) / a(kColumns - 1, kColumns - 1);
-  const double about_mean = squares - mean * b(kColumns - 1);
+  const double about_mean = squares - b(kSignals) * b(kSignals) / a(kSignals, kSignals);
   const double left = squares - b.dot(solve(a, b));
-  return about_mean > 0.0 ? std::clamp(1.0 - left / about_mean, 0.0, 1.0) : 0.0;
+  const double numbers = double(Drift::kOrders) * problem.trials() - 1.0;
+  if (about_mean <= 0.0 || numbers <= double(kSignals)) return 0.0;
+  return std::clamp(1.0 - left / about_mean * numbers / (numbers - double(kSignals)), 0.0, 1.0);
 }
 
 }  // namespace lab

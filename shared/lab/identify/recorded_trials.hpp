@@ -13,6 +13,7 @@ struct Channel {
   double noise_floor = 0;  ///< rmse that a true model would have: the channel's own noise with the
                            ///< motion's noise as it passes through the base model
   std::size_t components = 0;  ///< if it is a norm: of so many of the channels after it
+  double measured_rms = 0.0;   ///< root mean square of what was measured; 0: not told
 };
 
 /// Named states of one trial at the full rate ("depth_m", "speed_m_s", …), for finding where an

@@ -85,6 +85,7 @@ bool Selection::clearly_better(const Solution& larger, const Solution& smaller) 
 }
 
 bool Selection::admissible(const Solution& at) const {
+  if (!refused_.empty() && contains(at.structure, refused_)) return false;
   for (const Candidate& candidate : residual_.problem().candidates()) {
     if (candidate.facts.admissible == nullptr || !contains(at.structure, candidate.facts.id))
       continue;
@@ -113,6 +114,18 @@ std::vector<const Solution*> Selection::best_of(std::size_t effects, std::size_t
       out.push_back(&solution);
   std::ranges::stable_sort(out, {}, [&](const Solution* s) { return cost(residual_, *s, base()); });
   if (out.size() > most) out.resize(most);
+  return out;
+}
+
+/// The best of a size by cost, and those that come nearest to the floor: the price of what is free in each trial must not
+/// keep what explains most from being grown.
+std::vector<const Solution*> Selection::to_grow(std::size_t effects) const {
+  auto out = best_of(effects, kSelection.grown);
+  auto all = best_of(effects, tried_.size());
+  std::ranges::stable_sort(all, {}, [](const Solution* s) { return s->mean_square(); });
+  if (all.size() > kSelection.grown_by_square) all.resize(kSelection.grown_by_square);
+  for (const Solution* s : all)
+    if (std::ranges::find(out, s) == out.end()) out.push_back(s);
   return out;
 }
 
@@ -167,6 +180,8 @@ void Selection::reshape(std::size_t effects) {
   }
 }
 
+/// Adds effects to the best structures of each size until the best is at the floor. One that is at the floor by numbers that
+/// are free in each trial is grown all the same, for these take up what another effect does slowly.
 void Selection::grow() {
   refine(1);
   const SelectionThresholds& thresholds = residual_.problem().selection_thresholds();
@@ -175,8 +190,10 @@ void Selection::grow() {
       !clearly_better(*first.front(), base()))
     return;
   for (int size = 1; size < options_.max_effects; ++size) {
-    const auto best = best_of(std::size_t(size), kSelection.grown);
-    if (best.empty() || best.front()->mean_square() < thresholds.stop_below) return;
+    const auto best = to_grow(std::size_t(size));
+    if (best.empty() || (best.front()->mean_square() < thresholds.stop_below &&
+                         residual_.problem().free_per_trial(best.front()->structure) == 0))
+      return;
     std::vector<std::pair<const Solution*, std::string>> todo;
     for (const Solution* from : best) {
       std::vector<std::pair<double, std::string>> gains;
@@ -237,8 +254,8 @@ void Selection::choose() {
   } while (simplified.insert(chosen_).second && go_on(0.9));
 }
 
-/// A trend that is free in every trial can stand in for any slow law. Where it follows the motion
-/// it is no sensor's: what it stood in for is left unexplained instead.
+/// A trend that is free in every trial can stand in for any slow law. Where it follows the motion it is no sensor's, and
+/// the choice is made anew without it.
 void Selection::refuse_trends() {
   for (const Candidate& candidate : residual_.problem().candidates()) {
     const std::string& id = candidate.facts.id;
@@ -246,10 +263,9 @@ void Selection::refuse_trends() {
     if (drift_r2_on_motion(residual_, chosen(), id) <
         residual_.problem().selection_thresholds().drift_r2_on_motion)
       continue;
-    const Structure less = minus(chosen().structure, id);
-    part(Solution(chosen()), less);
-    chosen_ = name(less);
+    part(Solution(chosen()), minus(chosen().structure, id));
     refused_ = id;
+    choose();
   }
 }
 

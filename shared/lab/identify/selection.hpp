@@ -60,6 +60,7 @@ class Selection {
   void explain_shifts_by(const std::string& bias);
   /// The cheapest of a size, most probable first.
   std::vector<const Solution*> best_of(std::size_t effects, std::size_t most) const;
+  std::vector<const Solution*> to_grow(std::size_t effects) const;
   bool go_on(double share);
 
   const Residual& residual_;

@@ -131,6 +131,16 @@ VerdictText sentences(const Diagnosis& d, std::string_view unit) {
       return {fmt::format("{} {} missing, and at least one other effect.", these, are),
               fmt::format("{} The remaining error is {} the noise floor.{}", change,
                           times_floor(after, floor), on_what(d.depends_on))};
+    case Verdict::undecided:
+      return {"These recordings cannot tell whether an effect is missing.",
+              fmt::format("The error of the refitted model on held-out trials, {}, is at the noise "
+                          "floor, but that is {}, "
+                          "{:.0f} % of the force: an effect would be lost in it. Record with a "
+                          "higher rate or a slower "
+                          "motion, so that velocity and acceleration are known better, or with a "
+                          "sensor of less noise.",
+                          figure(d.base.held_out_rmse, unit), figure(floor, unit),
+                          100.0 * d.floor_share)};
     case Verdict::unexplained:
       return {
           "A missing effect is not in the catalogue.",

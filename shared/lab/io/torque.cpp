@@ -29,9 +29,12 @@ lab::Diagnosis joined(const lab::Diagnosis& force, const lab::Diagnosis& torque)
   lab::Diagnosis out = force;
   out.effects.insert(out.effects.end(), torque.effects.begin(), torque.effects.end());
   const bool left = more(force.verdict) || more(torque.verdict);
-  out.verdict = out.effects.empty() ? left ? Verdict::unexplained : Verdict::complete
-                : left              ? Verdict::partly
-                                    : Verdict::missing;
+  const bool undecided =
+      force.verdict == Verdict::undecided || torque.verdict == Verdict::undecided;
+  out.verdict = !out.effects.empty() ? left ? Verdict::partly : Verdict::missing
+                : left               ? Verdict::unexplained
+                : undecided          ? Verdict::undecided
+                                     : Verdict::complete;
   out.probability = force.probability * torque.probability;  // that all of it is right
   return out;
 }

@@ -24,7 +24,7 @@ section{background:var(--card);border:1px solid var(--grid);border-radius:10px;p
 .note{font-size:.86rem;margin-top:.9em}
 .verdict{border-left:6px solid var(--frame);padding:24px 26px 22px}
 .verdict.complete,.verdict.missing{border-left-color:var(--good)}
-.verdict.partly{border-left-color:var(--warn)}
+.verdict.partly,.verdict.undecided{border-left-color:var(--warn)}
 .verdict.unexplained{border-left-color:var(--bad)}
 .verdict h2{font-size:1.75rem;line-height:1.2;letter-spacing:-.01em}
 .verdict p{font-size:1.04rem;margin:.5em 0 0;max-width:44em}

@@ -117,7 +117,7 @@ std::string verdict(const ReportContent& content) {
                           against_floor(content.better->comparison.rmse, given.noise_floor));
   }
   figures += key_figure("Noise floor", figure(given.noise_floor, unit), "of these measurements");
-  if (content.stated)
+  if (content.stated && std::isfinite(content.stated->probability))
     figures += key_figure("Probability", percent(content.stated->probability),
                           "that this answer is right");
   return fmt::format(

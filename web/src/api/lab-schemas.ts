@@ -150,7 +150,7 @@ const motionProgramSchema = v.object({
 });
 
 export const diagnosisSchema = v.object({
-  verdict: v.picklist(['complete', 'missing', 'partly', 'unexplained']),
+  verdict: v.picklist(['complete', 'missing', 'partly', 'unexplained', 'undecided']),
   headline: v.optional(v.string(), ''),
   detail: v.optional(v.string(), ''),
   probability: figure,

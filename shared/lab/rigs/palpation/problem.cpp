@@ -257,13 +257,14 @@ void PalpationProblem::residuals_near(const Structure& structure, std::span<cons
 
 void PalpationProblem::set_channels() {
   Vec6 squares = Vec6::Zero();
-  double count = 0.0;
+  double count = 0.0, measured = 0.0;
   for (const auto& r : trials_) {
     squares += r.floor.cwiseAbs2() * double(r.size());
+    for (const Vec6& wrench : r.measured) measured += wrench.head<3>().squaredNorm();
     count += double(r.size());
   }
   squares /= count;
-  channels_ = {{"force_N", std::sqrt(squares.head<3>().sum()), 3}};
+  channels_ = {{"force_N", std::sqrt(squares.head<3>().sum()), 3, std::sqrt(measured / count)}};
   for (int c = 0; c < 6; ++c) channels_.push_back({kChannelNames[c], std::sqrt(squares[c])});
 }
 

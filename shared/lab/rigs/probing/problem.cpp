@@ -84,15 +84,18 @@ void ProbingProblem::set_candidates() {
 }
 
 void ProbingProblem::set_channels() {
-  double sum = 0.0, count = 0.0, other = 0.0;
+  double sum = 0.0, count = 0.0, other = 0.0, squares = 0.0;
   bool both = true;
   for (const auto& r : trials_) {
     sum += r.floor * r.floor * double(r.size());
     other += r.other_noise_sd * r.other_noise_sd * double(r.size());
     count += double(r.size());
+    for (const double v : r.measured) squares += v * v;
     both = both && !r.other.empty() && !r.motion.theta_rad.empty();
   }
-  channels_ = {{turns_ ? "tz_Nm" : "fz_N", std::sqrt(sum / count)}};
+  channels_ = {{.name = turns_ ? "tz_Nm" : "fz_N",
+                .noise_floor = std::sqrt(sum / count),
+                .measured_rms = std::sqrt(squares / count)}};
   if (both) channels_.push_back({"tz_Nm", std::sqrt(other / count)});
 }
 

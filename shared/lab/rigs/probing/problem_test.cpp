@@ -34,7 +34,8 @@ Moment moment(int trial, double t) {
 }
 
 trial::ProbingSet set_of(const std::function<double(const Moment&)>& hidden_N, int trials = 6,
-                         double rate_Hz = 500.0) {
+                         double rate_Hz = 500.0,
+                         const std::function<Moment(int, double)>& motion = moment) {
   std::mt19937_64 random(5);
   std::normal_distribution<> normal;
   trial::ProbingSet set;
@@ -44,7 +45,7 @@ trial::ProbingSet set_of(const std::function<double(const Moment&)>& hidden_N, i
     m.id = "t" + std::to_string(k);
     m.file = m.id + ".csv";
     for (int i = 0; i < int(6.0 * rate_Hz); ++i) {
-      const Moment at = moment(k, i / rate_Hz);
+      const Moment at = motion(k, i / rate_Hz);
       m.t_s.push_back(at.t_s);
       m.x_m.push_back(at.x_m + kNoise_m * normal(random));
       m.fz_N.push_back(kStiffness * at.x_m + kDamping * at.v_m_s + hidden_N(at) +
@@ -313,6 +314,62 @@ TEST(ProbingProblem, ATorqueThatLacksNothingIsComplete) {
   const auto d = diagnosis_of_torque(0.0);
   ASSERT_TRUE(d) << d.error().what;
   EXPECT_EQ(d->verdict, Verdict::complete);
+}
+
+/// SIMULATED: a slow trend of each trial's own, as a sensor's: a constant and a parabola in time, N.
+double own_trend_N(int trial, double t_s) {
+  const double share = t_s / 3.0 - 1.0;
+  return 0.4 * std::sin(2.0 + 3.0 * trial) + 0.5 * std::cos(5.0 * trial) * share * share;
+}
+
+trial::ProbingSet with_own_trends(trial::ProbingSet set) {
+  for (std::size_t k = 0; k < set.trials.size(); ++k)
+    for (std::size_t i = 0; i < set.trials[k].t_s.size(); ++i)
+      set.trials[k].fz_N[i] += own_trend_N(int(k), set.trials[k].t_s[i]);
+  return set;
+}
+
+std::vector<std::string> named(const Diagnosis& d) {
+  std::vector<std::string> out;
+  for (const FoundEffect& effect : d.effects) out.push_back(effect.id);
+  std::ranges::sort(out);
+  return out;
+}
+
+TEST(ProbingProblem, ASmallFrictionIsNamedBesideADriftThatTakesMost) {
+  const auto problem = made(with_own_trends(
+      set_of([](const Moment& m) { return 0.03 * (m.v_m_s > 0 ? 1.0 : -1.0); }, 8)));
+  const auto d = diagnose(*problem);
+  ASSERT_TRUE(d) << d.error().what;
+  EXPECT_THAT(named(*d), testing::ElementsAre("coulomb_friction", "sensor_drift"));
+}
+
+TEST(ProbingProblem, ATrendThatFollowsTheMotionIsNoDriftOfTheSensor) {
+  // A spring that stiffens, which is in no catalogue, under a slow stroke with a quick tremor: 0.3 N of it are slow.
+  const auto slow_stroke = [](int trial, double t) -> Moment {
+    const double a = 0.5 + 0.04 * trial, b = 18.0;
+    return {t, 0.012 + 0.004 * std::sin(a * t + trial) + 0.0002 * std::sin(b * t),
+            0.004 * a * std::cos(a * t + trial) + 0.0002 * b * std::cos(b * t), 2.0};
+  };
+  const auto problem =
+      made(set_of([](const Moment& m) { return 2e4 * (m.x_m - 0.012) * (m.x_m - 0.012); }, 8, 500.0,
+                  slow_stroke));
+  const auto d = diagnose(*problem);
+  ASSERT_TRUE(d) << d.error().what;
+  EXPECT_THAT(named(*d), testing::Not(testing::Contains("sensor_drift")));
+  EXPECT_THAT(d->notes, testing::Contains(HasSubstr("sensor_drift was left out")));
+}
+
+TEST(ProbingProblem, ARecordingOfNoiseDoesNotSayThatNothingIsMissing) {
+  // By set_of the force has 45.5 N in the root mean square; with noise of 12 N it is 47.0 N.
+  std::mt19937_64 random(3);
+  std::normal_distribution<> noise_N(0.0, 12.0);
+  const auto problem = made(set_of([&](const Moment&) { return noise_N(random); }));
+  const auto d = diagnose(*problem);
+  ASSERT_TRUE(d) << d.error().what;
+  EXPECT_EQ(d->verdict, Verdict::undecided);
+  EXPECT_NEAR(d->floor_share, 12.0 / 47.0, 0.02);
+  EXPECT_TRUE(std::isnan(d->probability));
 }
 
 TEST(ProbingProblem, WhatNeedsAChannelThatWasNotRecordedIsLeftOutAndSaidSo) {

@@ -164,6 +164,13 @@ describe('the verdict', () => {
   });
 
   it('names the kind of verdict for a result without sentences', () => {
+    expect(
+      verdictOf(diagnosis({ verdict: 'undecided', effects: [], probability: null, detail: 'All noise.' })),
+    ).toEqual({
+      tone: 'warn',
+      headline: 'These recordings cannot tell whether an effect is missing.',
+      detail: 'All noise.',
+    });
     expect(verdictOf(diagnosis({ verdict: 'complete', effects: [] }))).toMatchObject({
       tone: 'good',
       headline: 'No effect is missing.',

@@ -9,13 +9,14 @@ export interface Verdict {
   readonly detail: string;
 }
 
-const kTones = { complete: 'good', missing: 'accent', partly: 'warn', unexplained: 'bad' } as const;
+const kTones = { complete: 'good', missing: 'accent', partly: 'warn', unexplained: 'bad', undecided: 'warn' } as const;
 /** Of results from before the server wrote sentences. */
 const kHeadlines = {
   complete: marked('No effect is missing.'),
   missing: marked('An effect is missing.'),
   partly: marked('Effects are missing; those found explain a part.'),
   unexplained: marked('A missing effect is not in the catalogue.'),
+  undecided: marked('These recordings cannot tell whether an effect is missing.'),
 };
 
 export function verdictOf({ verdict, headline, detail, probability }: Diagnosis): Verdict {
