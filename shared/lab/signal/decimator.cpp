@@ -82,11 +82,11 @@ void Decimator::apply_sizes(std::span<const std::size_t> samples, std::span<cons
   }
 }
 
-double Decimator::third_difference_gain() const {
+double Decimator::third_difference_gain(std::size_t apart) const {
   const auto covariance = [&](std::size_t lag) {
+    const std::size_t samples = lag * apart * stride_;
     double sum = 0.0;
-    for (std::size_t k = lag * stride_; k < taps_.size(); ++k)
-      sum += taps_[k] * taps_[k - lag * stride_];
+    for (std::size_t k = samples; k < taps_.size(); ++k) sum += taps_[k] * taps_[k - samples];
     return sum;
   };
   // Of (1, −3, 3, −1): 20 at lag 0, −15, 6 and −1 at 1 to 3.

@@ -35,9 +35,9 @@ class Decimator {
 
   /// Variance of the output for white noise of variance 1.
   double noise_gain() const { return noise_gain_; }
-  /// Variance of the third difference of neighbouring outputs for the same, over 20: what noise_sd would take for the
-  /// outputs' own variance.
-  double third_difference_gain() const;
+  /// Variance of the third difference of every `apart`-th output for the same, over 20: what noise_sd would take for
+  /// the outputs' own variance.
+  double third_difference_gain(std::size_t apart = 1) const;
   double largest_tap() const { return taps_[half()]; }
 
  private:

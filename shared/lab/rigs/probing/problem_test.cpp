@@ -108,6 +108,22 @@ TEST(ProbingProblem, NoiseThatIsColouredIsInTheFloor) {
   EXPECT_EQ(d->verdict, Verdict::complete);
 }
 
+TEST(ProbingProblem, TheFloorHoldsNoiseThatIsCorrelatedOverManySamples) {
+  // An autoregressive process of order 1 that forgets within 3.8 ms, at 2 kHz: variance s²/(1 − a²).
+  std::mt19937_64 random(37);
+  std::normal_distribution<> normal;
+  auto set = set_of([](const Moment&) { return 0.0; }, 6, 2000.0);
+  const double a = std::exp(-0.5e-3 / 3.8e-3), level_N = 0.3,
+               step_N = level_N * std::sqrt(1.0 - a * a);
+  for (auto& trial : set.trials) {
+    double level = 0.0;
+    for (double& f : trial.fz_N) f += level = a * level + step_N * normal(random);
+  }
+  const auto problem = made(std::move(set));
+  const double total_N = std::hypot(kNoise_N, level_N);
+  EXPECT_NEAR(problem->channels().front().noise_floor, total_N, 0.14 * total_N);
+}
+
 TEST(ProbingProblem, AModelThatIsRightIsAtTheFloorAndItsNumbersAreFound) {
   const auto problem = made(set_of([](const Moment&) { return 0.0; }));
   const auto f = fit(*problem, {});

@@ -338,21 +338,28 @@ Result<ProbingRecording> prepare(trial::ProbingMeasurement&& trial,
 
 namespace {
 
-/// Variance of single samples about the means of blocks of `length`: the tenth of the blocks that is quietest over
-/// that quantile of χ² [Wilson1931, eq. 1], so that only what all blocks hold counts.
+/// Variance of single samples about the means of blocks of `length`: of stretches of 16 blocks the tenth that is quietest,
+/// over that quantile of χ² [Wilson1931, eq. 1], so that only what all stretches hold counts. One block alone may be quiet
+/// by chance where its samples follow each other.
 double variance_within(std::span<const double> y, std::size_t length) {
-  std::vector<double> variances;
+  std::vector<double> blocks;
   for (std::size_t from = 0; from + length <= y.size(); from += length) {
     double mean = 0.0, squares = 0.0;
     for (std::size_t k = from; k < from + length; ++k) mean += y[k] / double(length);
     for (std::size_t k = from; k < from + length; ++k) squares += (y[k] - mean) * (y[k] - mean);
-    variances.push_back(squares / double(length - 1));
+    blocks.push_back(squares / double(length - 1));
   }
+  const std::size_t together = std::clamp<std::size_t>(blocks.size() / 10, 1, 16);
+  std::vector<double> variances;
+  for (std::size_t from = 0; from + together <= blocks.size(); from += together)
+    variances.push_back(std::accumulate(blocks.begin() + std::ptrdiff_t(from),
+                                        blocks.begin() + std::ptrdiff_t(from + together), 0.0) /
+                        double(together));
   if (variances.empty()) return 0.0;
   const auto quietest = variances.begin() + std::ptrdiff_t(0.1 * double(variances.size()));
   std::ranges::nth_element(variances, quietest);
   constexpr double kTenth = -1.2816;  // of the standard normal
-  const double spread = 2.0 / (9.0 * double(length - 1)),
+  const double spread = 2.0 / (9.0 * double(together * (length - 1))),
                root = 1.0 - spread + kTenth * std::sqrt(spread);
   return *quietest / (root * root * root);
 }
@@ -367,16 +374,29 @@ double passed_on(std::span<const double> errors, const Decimator& decimator, std
   return std::min(most, decimator.largest_tap() * sum);
 }
 
+/// What of an output's standard deviation is noise, by third differences of every `apart`-th output: white noise gives the
+/// same for each, noise that is correlated over several outputs more where they lie further apart.
+double noise_of_outputs(std::span<const double> outputs, const Decimator& decimator,
+                        std::size_t apart) {
+  double sum = 0.0;
+  for (std::size_t first = 0; first < apart; ++first) {
+    std::vector<double> every;
+    for (std::size_t k = first; k < outputs.size(); k += apart) every.push_back(outputs[k]);
+    sum += noise_sd(every, kQuietestQuantile) / double(apart);
+  }
+  return sum * std::sqrt(decimator.noise_gain() / decimator.third_difference_gain(apart));
+}
+
 }  // namespace
 
 void estimate_noise(ProbingRecording& r, std::span<const double> residual,
                     std::span<const double> thin) {
   const double gain = r.decimator.noise_gain();
   // What a model misses is in what it leaves, what it does not miss is in the force: each is a bound.
-  const double slow_sd =
-      std::min(noise_sd(thin, kQuietestQuantile), noise_sd(r.measured_thin, kQuietestQuantile)) *
-      std::sqrt(gain / r.decimator.third_difference_gain());
-  r.slow_noise_sd = std::max(r.slow_noise_sd, slow_sd);
+  for (const std::size_t apart : {1u, 2u})
+    r.slow_noise_sd =
+        std::max(r.slow_noise_sd, std::min(noise_of_outputs(thin, r.decimator, apart),
+                                           noise_of_outputs(r.measured_thin, r.decimator, apart)));
   const std::size_t stride = r.decimator.stride();
   if (stride < 4) {
     if (stride == 1) r.noise_sd = std::max(r.noise_sd, r.slow_noise_sd);
