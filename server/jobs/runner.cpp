@@ -165,7 +165,14 @@ bool Runner::do_one(Lane& lane) {
 core::Result<void> Runner::conclude(Lane& lane, const store::Job& job,
                                     const core::Result<void>& done) {
   if (is_lost(lane)) return {};
-  if (!done && done.error().code == core::Errc::cancelled && ending())
+  const bool stopped = !done && done.error().code == core::Errc::cancelled && ending();
+  // Where files are kept is away: the job, which did not fail, waits until it is back.
+  const bool waits =
+      !done && done.error().code == core::Errc::unavailable && !objects_.is_reachable();
+  if (waits)
+    log_(fmt::format("job {} of {} waits: {}", core::name(job.kind), job.subject,
+                     done.error().what));
+  if (stopped || waits)
     return store_.write(
         [&](store::Writing& tx) { return store::give_back_job(tx, job, core::utc_us()); });
   if (!done) {
