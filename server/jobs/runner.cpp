@@ -12,6 +12,7 @@
 #include "db/store/cohort/analyses.hpp"
 #include "db/store/lab/lab.hpp"
 #include "db/store/trials/trials.hpp"
+#include "db/store/volumes/store_away.hpp"
 #include "server/jobs/analyse.hpp"
 #include "server/jobs/assess.hpp"
 #include "server/jobs/certify_case.hpp"
@@ -167,8 +168,7 @@ core::Result<void> Runner::conclude(Lane& lane, const store::Job& job,
   if (is_lost(lane)) return {};
   const bool stopped = !done && done.error().code == core::Errc::cancelled && ending();
   // Where files are kept is away: the job, which did not fail, waits until it is back.
-  const bool waits =
-      !done && done.error().code == core::Errc::unavailable && !objects_.is_reachable();
+  const bool waits = !done && store::is_store_away(done.error());
   if (waits)
     log_(fmt::format("job {} of {} waits: {}", core::name(job.kind), job.subject,
                      done.error().what));

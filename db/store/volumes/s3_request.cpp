@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "core/require.hpp"
+#include "db/store/volumes/store_away.hpp"
 
 namespace tractus {
 namespace store {
@@ -38,8 +39,6 @@ struct Trouble {
   bool passes = false;
 };
 
-Error store_error(const std::string& what) { return {Errc::unavailable, "object store: " + what}; }
-
 std::string advice(const std::string& code) {
   if (code == "RequestTimeTooSkewed") return "the clocks differ: check NTP on both";
   if (code == "NoSuchBucket") return "create the bucket, or correct the address";
@@ -56,10 +55,10 @@ Trouble refusal(const S3Answer& answer) {
   const std::string said = code.empty()
                                ? fmt::format("status {}", answer.status)
                                : fmt::format("status {}, {}", answer.status, code.substr(0, 64));
-  if (passes) return {store_error(said + ": try again later"), true};
+  if (passes) return {store_away(said + ": try again later"), true};
   if (answer.status == 403 || answer.status == 401 || answer.status == 404)
-    return {store_error(said + ": " + advice(code))};
-  return {store_error("refuses the request (" + said + ")")};
+    return {store_away(said + ": " + advice(code))};
+  return {store_away("refuses the request (" + said + ")")};
 }
 
 struct Transfer {
@@ -114,7 +113,7 @@ std::optional<Trouble> try_once(Transfer& transfer) {
   const CURLcode code = curl_easy_perform(transfer.curl);
   if (transfer.ended) return Trouble{{Errc::cancelled, "object store: the transfer was ended"}};
   if (code != CURLE_OK)
-    return Trouble{store_error(fmt::format("does not answer: {}", curl_easy_strerror(code))), true};
+    return Trouble{store_away(fmt::format("does not answer: {}", curl_easy_strerror(code))), true};
   read_head(transfer);
   const S3Answer& answer = transfer.answer;
   const bool absent = answer.status == 404 && xml_text(answer.body, "Code") != "NoSuchBucket";

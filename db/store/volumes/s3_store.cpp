@@ -13,6 +13,7 @@
 #include "core/try.hpp"
 #include "db/store/volumes/file_pieces.hpp"
 #include "db/store/volumes/s3_request.hpp"
+#include "db/store/volumes/store_away.hpp"
 
 namespace tractus {
 namespace store {
@@ -33,7 +34,7 @@ std::string path_of_object(const std::string& sha256) {
 }
 
 Error lost(const std::string& sha256, const std::string& how) {
-  return {Errc::unavailable, fmt::format("object store: object {}: {}", sha256, how)};
+  return store_away(fmt::format("object {}: {}", sha256, how));
 }
 
 std::string completion(const std::vector<std::string>& etags) {
@@ -87,7 +88,7 @@ class S3Store final : public ObjectStore {
                          std::string* etag = nullptr) const {
     auto answer =
         TRY(client_.ask({.method = "PUT", .path = path, .body = bytes, .sha256 = sha256}));
-    if (answer.status == 404) return Error{Errc::unavailable, "object store: refuses " + path};
+    if (answer.status == 404) return store_away("refuses " + path);
     if (etag) *etag = std::move(answer.etag);
     return {};
   }
