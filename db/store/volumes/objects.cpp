@@ -181,8 +181,6 @@ core::Result<std::optional<std::uint64_t>> Objects::size_of(const std::string& s
   return failure ? std::nullopt : std::optional<std::uint64_t>(size);
 }
 
-bool Objects::is_reachable() const { return bool(size_of(core::sha256({}))); }
-
 core::Result<std::string> Objects::kept_sha256(const std::string& sha256) const {
   if (!beyond_) return file_sha256(path_of(sha256));
   core::Sha256 hash;

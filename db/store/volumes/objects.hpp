@@ -31,8 +31,6 @@ class Objects {
   core::Result<std::filesystem::path> file(const std::string& sha256) const;
   /// Bytes of an object where objects are kept; nothing if it is not there. Errors: unavailable.
   core::Result<std::optional<std::uint64_t>> size_of(const std::string& sha256) const;
-  /// False while an object store beyond the folder does not answer.
-  bool is_reachable() const;
   /// SHA-256 of the bytes as they are read where objects are kept.
   core::Result<std::string> kept_sha256(const std::string& sha256) const;
 
