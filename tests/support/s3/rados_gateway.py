@@ -161,6 +161,7 @@ class Cluster:
 
 
 def main():
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit("rados_gateway: ended by a signal"))  # nothing is left behind
     missing = [program for program in PROGRAMS if shutil.which(program) is None]
     if missing:
         sys.exit(f"rados_gateway: no {', '.join(missing)}: install the packages radosgw, ceph-mon, ceph-osd and curl")
