@@ -23,7 +23,7 @@ missing_packages() {  # missing_packages LIST...   of deploy/packages-LIST.txt
   done
 }
 
-# Debian starts a PostgreSQL cluster, nginx, Prometheus and Orthanc when it installs these packages. The tests start their own servers, so these
+# Debian starts a PostgreSQL cluster, nginx, Prometheus, Orthanc and daemons of Ceph when it installs these packages. The tests start their own servers, so these
 # services are kept off on a machine that did not have them.
 quiet_services() {  # quiet_services PACKAGE...   before they are installed
   local conf=/etc/postgresql-common/createcluster.conf
@@ -31,7 +31,7 @@ quiet_services() {  # quiet_services PACKAGE...   before they are installed
     as_root mkdir -p "${conf%/*}"
     echo "create_main_cluster = false" | as_root tee "$conf" >/dev/null
   fi
-  if [[ " $* " == *" nginx-light "* || " $* " == *" prometheus "* || " $* " == *" orthanc "* ]] && [ ! -e /usr/sbin/policy-rc.d ]; then
+  if [[ " $* " == *" nginx-light "* || " $* " == *" prometheus "* || " $* " == *" orthanc "* || " $* " == *" radosgw "* ]] && [ ! -e /usr/sbin/policy-rc.d ]; then
     printf '#!/bin/sh\nexit 101\n' | as_root tee /usr/sbin/policy-rc.d >/dev/null
     as_root chmod 755 /usr/sbin/policy-rc.d
     kept_quiet=1

@@ -139,7 +139,7 @@ void BackupFolder::verify_now(api::Backup& backup) {
     if (!scratch) return scratch.error();
     const fs::path restored = scratch->path() / "data";
     const auto shown = progress();
-    TRY(restore(folder_ / backup.id, restored, Database::file_in(restored),
+    TRY(restore(folder_ / backup.id, restored, {Database::file_in(restored), {}},
                 [&](double share) { return shown(0.5 * share); }));
     auto data = TRY(open_data(restored, Database::file_in(restored)));
     return examine(data, [&](double share) { return shown(0.5 + 0.5 * share); });

@@ -25,6 +25,8 @@ struct Common {
 };
 /// --data and --json.
 std::shared_ptr<Common> common_options(CLI::App& command);
+/// --objects.
+std::shared_ptr<std::string> objects_option(CLI::App& command);
 
 // Each adds its options to `command`.
 Run init_command(CLI::App& command);

@@ -13,6 +13,7 @@
 #include "core/file.hpp"
 #include "core/try.hpp"
 #include "server/app/log.hpp"
+#include "server/app/objects_address.hpp"
 
 namespace tractus {
 namespace app {
@@ -106,8 +107,11 @@ core::Result<DataFolder> open_up_to_date(const fs::path& path) {
   return open_data(path, database);
 }
 
-core::Result<DataFolder> make_data(const fs::path& path) {
+core::Result<DataFolder> make_data(const fs::path& path, const std::string& objects_address) {
   auto database = TRY(new_database(path));
+  if (database.is_shared())  // nothing is made when it cannot be reached
+    TRY(database.open());
+  TRY(keep_objects_at(path, objects_address));
   return open_data(path, database);
 }
 
@@ -120,7 +124,7 @@ core::Result<DataFolder> open_data(const fs::path& path, const Database& databas
     return core::Error{core::Errc::io,
                        fmt::format("{}: cannot create: {}", path.string(), failure.message())};
   TRY(leave_to_owner(path));
-  auto objects = TRY(store::Objects::open(path));
+  auto objects = TRY(open_objects(path));
   auto partials = TRY(store::PartialFiles::open(path));
   auto opened = TRY(database.open());
   TRY(note_address(path, database));

@@ -29,8 +29,10 @@ core::Result<DataFolder> open_data(const std::filesystem::path& path);
 core::Result<DataFolder> open_up_to_date(const std::filesystem::path& path);
 /// With its records there, whatever the environment says.
 core::Result<DataFolder> open_data(const std::filesystem::path& path, const Database& database);
-/// Makes one, or opens what is there (accounts are another matter).
-core::Result<DataFolder> make_data(const std::filesystem::path& path);
+/// Makes one, or opens what is there (accounts are another matter). @param objects_address  of
+/// `keep_objects_at`; empty: objects are kept in the folder
+core::Result<DataFolder> make_data(const std::filesystem::path& path,
+                                   const std::string& objects_address);
 
 /// core::make_private, with a line in the log when something was repaired.
 core::Result<void> leave_to_owner(const std::filesystem::path& folder);

@@ -36,6 +36,21 @@ std::shared_ptr<Common> common_options(CLI::App& command) {
   return common;
 }
 
+std::shared_ptr<std::string> objects_option(CLI::App& command) {
+  auto address = std::make_shared<std::string>();
+  command
+      .add_option("--objects", *address,
+                  "Address of an S3 bucket for volumes, trials and all other finished files, "
+                  "https://HOST[:PORT]/BUCKET[/PREFIX][?region=REGION], instead of the data "
+                  "folder, which holds a cache of them then; the address is stored in the data "
+                  "folder. Give the credentials in AWS_ACCESS_KEY_ID and AWS_SECRET_ACCESS_KEY, or "
+                  "in the file that AWS_SHARED_CREDENTIALS_FILE names (default: "
+                  "~/.aws/credentials)")
+      ->envname("TRACTUS_OBJECTS")
+      ->type_name("ADDRESS");
+  return address;
+}
+
 }  // namespace app
 
 namespace {

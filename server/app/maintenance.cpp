@@ -9,6 +9,7 @@
 #include "db/store/trials/uploads.hpp"
 #include "server/app/anchors.hpp"
 #include "server/app/leaving.hpp"
+#include "server/app/objects_address.hpp"
 
 namespace tractus {
 namespace app {
@@ -49,11 +50,11 @@ core::Result<void> copy_small_files(const fs::path& from, const fs::path& to) {
 /// Objects that the database names, each checked against its name while it is copied.
 core::Result<std::uint64_t> copy_objects(const fs::path& from, store::Store& names,
                                          const store::Objects& into, const core::Progress& shown) {
-  auto source = TRY(store::Objects::open(from));
+  const auto source = TRY(open_objects(from));
   auto entries = TRY(names.read([](store::Reading& tx) { return store::all_objects(tx); }));
   std::uint64_t bytes = 0, done = 0;
   for (const store::ObjectEntry& entry : entries) {
-    if (auto in = into.copy_in(source.path_of(entry.sha256), entry.sha256); !in)
+    if (auto in = into.copy_from(source, entry.sha256); !in)
       return core::Error{in.error().code,
                          fmt::format("object {}: {}", entry.sha256, in.error().what)};
     bytes += entry.size_bytes;
@@ -103,7 +104,7 @@ core::Result<core::Json> manifest_of(const fs::path& folder, store::Store& store
 core::Result<std::uint64_t> copy_files(const fs::path& from, const fs::path& to,
                                        const core::Progress& shown) {
   auto names = TRY(store::Store::open(to / kDatabase));
-  auto objects = TRY(store::Objects::open(to));
+  auto objects = TRY(open_objects(to));
   auto partials = TRY(store::PartialFiles::open(to));
   auto bytes = TRY(copy_objects(from, names, objects, shown));
   TRY(copy_partials(from, names, partials));
@@ -213,8 +214,9 @@ core::Result<core::Json> back_up(const fs::path& data, const fs::path& out,
   return manifest;
 }
 
-core::Result<core::Json> restore(const fs::path& from, const fs::path& data, const Database& target,
-                                 const core::Progress& shown, const fs::path& erasures) {
+core::Result<core::Json> restore(const fs::path& from, const fs::path& data,
+                                 const RestoreTarget& target, const core::Progress& shown,
+                                 const fs::path& erasures) {
   auto manifest = TRY(read_manifest(from));
   TRY(check_file(from / kDatabase, manifest.value("database_sha256", core::Json())));
   for (const auto& [name, sha256] : manifest["files"].items()) {
@@ -224,6 +226,7 @@ core::Result<core::Json> restore(const fs::path& from, const fs::path& data, con
     TRY(check_file(from / name, sha256));
   }
   auto scratch = TRY(scratch_for(data));
+  TRY(keep_objects_at(scratch.path(), target.objects_address));
   std::error_code failure;
   fs::copy_file(from / kDatabase, scratch.path() / kDatabase, failure);
   if (failure)
@@ -231,7 +234,7 @@ core::Result<core::Json> restore(const fs::path& from, const fs::path& data, con
                                                    (from / kDatabase).string(), failure.message())};
   TRY(copy_files(from, scratch.path(), shown));
   TRY(erase_again(scratch.path(), from, erasures, manifest));
-  if (target.is_shared()) TRY(move_records(scratch.path(), target));
+  if (target.records.is_shared()) TRY(move_records(scratch.path(), target.records));
   TRY(scratch.keep_as(data));
   return manifest;
 }

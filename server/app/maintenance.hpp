@@ -17,15 +17,21 @@ inline constexpr const char* kBackupManifest = "backup.json";  ///< in every bac
 core::Result<core::Json> back_up(const std::filesystem::path& data,
                                  const std::filesystem::path& out, const core::Progress& shown);
 
+/// Where what a backup holds goes.
+struct RestoreTarget {
+  Database records;             ///< PostgreSQL's, which must be empty, or the folder's own file
+  std::string objects_address;  ///< of `keep_objects_at`; empty: into the folder
+};
+
 /// Makes a new data folder of a backup, every file checked against backup.json and its name. Its
-/// records go into `target`: a PostgreSQL database, which must be empty, or the folder's own file:
-/// so a server moves from one to the other. People who were erased since the backup was made are
+/// records and objects go into `target`: so a server moves from a file and a folder to PostgreSQL and
+/// an object store, or back. People who were erased since the backup was made are
 /// erased in the new folder before it appears: those of the list in the backup, of the list beside
 /// the backup's folder, and of `erasures` (leaving.hpp). "erased" in the answer counts them, and
 /// "erasure_lists" is how many lists there were outside the backup.
 /// Errors: as above; bad_input when `from` is no backup.
 core::Result<core::Json> restore(const std::filesystem::path& from,
-                                 const std::filesystem::path& data, const Database& target,
+                                 const std::filesystem::path& data, const RestoreTarget& target,
                                  const core::Progress& shown,
                                  const std::filesystem::path& erasures = {});
 

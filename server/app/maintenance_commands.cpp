@@ -93,6 +93,7 @@ Run restore_command(CLI::App& command) {
   const auto common = common_options(command);
   const auto from = std::make_shared<std::filesystem::path>();
   const auto erasures = std::make_shared<std::filesystem::path>();
+  const auto objects = objects_option(command);
   command.add_option("--from", *from, "Folder of the backup")->required();
   command.add_option("--erasures", *erasures,
                      "File erasures.list of the server's data folder: people who were erased since "
@@ -100,8 +101,8 @@ Run restore_command(CLI::App& command) {
                      "used without this option");
   return [=]() -> core::Result<int> {
     auto target = TRY(new_database(common->data));
-    const auto manifest =
-        TRY(restore(*from, common->data, target, core::terminal_progress("Restore"), *erasures));
+    const auto manifest = TRY(restore(*from, common->data, {target, *objects},
+                                      core::terminal_progress("Restore"), *erasures));
     if (!common->json) fmt::print("{}\n", erasures_text(manifest));
     return verified(*common, Covered::may_be);
   };

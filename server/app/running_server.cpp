@@ -245,6 +245,7 @@ core::Result<void> serve(const ServeOptions& given) {
   StopSignals signals;
   auto data = TRY(open_data(given.data));
   auto lock = TRY(ServingLock::take(given.data, data.store.shared()));
+  data.objects.limit_cache(given.objects_cache_bytes);
   const auto secure = TRY(secured(given));
   remove_left_overs(given.data, !data.store.shared());
   const auto scratch = TRY(own_scratch(given.data));

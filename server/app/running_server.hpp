@@ -23,6 +23,7 @@ struct ServeOptions {
   /// PEM files of an own certificate chain and its key, instead of the house's.
   std::optional<std::pair<std::filesystem::path, std::filesystem::path>> certificate;
   std::chrono::milliseconds job_lease{30'000};  ///< see jobs::Runner
+  std::uint64_t objects_cache_bytes = 0;        ///< see store::Objects::limit_cache
   std::optional<std::filesystem::path> oidc;    ///< settings of a provider of identities
   std::optional<std::filesystem::path> mail;    ///< settings of the mail server
   std::optional<std::filesystem::path> pacs;    ///< settings of the PACS

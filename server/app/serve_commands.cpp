@@ -54,6 +54,14 @@ Run serve_command(CLI::App& command) {
                   "of a server that died")
       ->check(CLI::Range(0.3, 3600.0))
       ->capture_default_str();
+  const auto cache_GiB = std::make_shared<double>(50.0);
+  command
+      .add_option(
+          "--objects-cache-GiB", *cache_GiB,
+          "Size of the cache in the data folder of objects that are kept in an S3 bucket, in "
+          "GiB; what was used within the last hour stays")
+      ->check(CLI::Range(0.0, 1e6))
+      ->capture_default_str();
   const auto oidc = std::make_shared<std::filesystem::path>();
   command.add_option("--oidc", *oidc,
                      "Settings file of an OpenID Connect provider with which people can sign in");
@@ -116,6 +124,7 @@ Run serve_command(CLI::App& command) {
     options->http.address = address.first;
     options->http.port = address.second;
     options->http.header_time = std::chrono::milliseconds(std::lround(*header_s * 1000));
+    options->objects_cache_bytes = static_cast<std::uint64_t>(*cache_GiB * double(1u << 30));
     options->job_lease = std::chrono::milliseconds(std::lround(*lease_s * 1000));
     TRY(serve(*options));
     return 0;

@@ -43,6 +43,7 @@ Run init_command(CLI::App& command) {
   const auto common = common_options(command);
   const auto name = std::make_shared<std::string>("admin");
   const auto file = std::make_shared<std::string>();
+  const auto objects = objects_option(command);
   command.add_option("--admin-name", *name, "Name of the first account, an administrator")
       ->capture_default_str();
   const auto hosts = std::make_shared<std::vector<std::string>>();
@@ -58,7 +59,7 @@ Run init_command(CLI::App& command) {
           core::Errc::bad_input,
           fmt::format("--admin-name: 1 to {} characters are expected", api::kMaxName)};
     auto password = TRY(password_from(*file));
-    auto data = TRY(make_data(common->data));
+    auto data = TRY(make_data(common->data, *objects));
     TRY(begin_trail(data));
     TRY(make_account(data, *name, password));
     auto names = http::own_names();

@@ -49,8 +49,8 @@ std::string text_of(const Json& json) {
 /// The snapshot of an earlier run, as it was frozen.
 Result<assessment::Snapshot> kept_snapshot(const store::Objects& objects,
                                            const store::AnalysisRun& run) {
-  auto description = TRY(core::read_json(objects.path_of(*run.description)));
-  auto data = TRY(core::read_file(objects.path_of(*run.snapshot), kMostData_bytes));
+  auto description = TRY(core::read_json(TRY(objects.file(*run.description))));
+  auto data = TRY(core::read_file(TRY(objects.file(*run.snapshot)), kMostData_bytes));
   if (core::sha256(data) != *run.snapshot)
     return Error{Errc::corrupt, "the frozen data were changed: their SHA-256 differs"};
   auto table = TRY(assessment::Table::parse(data, description["name"].get<std::string>(), {},
@@ -93,7 +93,7 @@ Result<assessment::Snapshot> frozen_now(store::Store& store, const store::Object
 }
 
 Result<assessment::Plan> plan_of(const store::Objects& objects, const store::AnalysisRun& run) {
-  const auto json = TRY(core::read_json(objects.path_of(run.plan)));
+  const auto json = TRY(core::read_json(TRY(objects.file(run.plan))));
   auto plan = assessment::Plan::from_json(json, "plan");
   if (!plan) return plan.error();
   if (run.plan_id) TRY(assessment::check_lock(*plan, "plan"));

@@ -44,7 +44,7 @@ core::Result<void> assess_trial(store::Store& store, const store::Objects& objec
                                 const std::string& trial_id) {
   auto record = TRY(store.read([&](store::Reading& tx) { return store::trial_of(tx, trial_id); }));
   if (!record) return core::Error{core::Errc::not_found, "no trial " + trial_id};
-  auto trial = trial::read_trial(objects.path_of(record->sha256));
+  auto trial = trial::read_trial(TRY(objects.file(record->sha256)));
   if (!trial) return trial.error();
   metrics::Subject subject{.trial = *trial};
   std::optional<CaseFacts> facts;

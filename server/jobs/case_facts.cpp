@@ -50,7 +50,7 @@ core::Result<std::optional<core::Json>> case_json_part(store::Store& store,
   auto part =
       TRY(store.read([&](store::Reading& tx) { return store::case_part(tx, case_id, name); }));
   if (!part) return std::optional<core::Json>();
-  auto bytes = TRY(core::read_file(objects.path_of(part->sha256), kMaxJson_bytes));
+  auto bytes = TRY(core::read_file(TRY(objects.file(part->sha256)), kMaxJson_bytes));
   auto json = TRY(core::parse_json(core::text_of(bytes), "case " + case_id + ": " + name));
   return std::optional(std::move(json));
 }

@@ -21,7 +21,7 @@ core::Result<cases::Certificate> late_certificate(store::Store& store,
       [&](store::Reading& tx) { return store::case_part(tx, case_id, cases::kVolumePart); }));
   if (!part || !facts.truth)
     return core::Error{core::Errc::not_found, "case " + case_id + " lacks its volume or truth"};
-  const auto file = TRY(volume::VolumeFile::open(objects.path_of(part->sha256)));
+  const auto file = TRY(volume::VolumeFile::open(TRY(objects.file(part->sha256))));
   return cases::certify_drilled(TRY(file.read_all()), facts.definition, *facts.truth);
 }
 

@@ -95,8 +95,8 @@ class LabRun {
  private:
   Result<lab_io::Case> opened(const store::ModelVersion& model, double from, double width,
                               bool keep_recordings = false) {
-    return lab_io::open_case({.model = objects_.path_of(model.sha256),
-                              .measurements = objects_.path_of(of_.set.id),
+    return lab_io::open_case({.model = TRY(objects_.file(model.sha256)),
+                              .measurements = TRY(objects_.file(of_.set.id)),
                               .own = wish_.own,
                               .threads = threads(),
                               .keep_recordings = keep_recordings},

@@ -12,6 +12,7 @@
 #include "db/store/cohort/analyses.hpp"
 #include "db/store/lab/lab.hpp"
 #include "db/store/trials/trials.hpp"
+#include "db/store/volumes/store_away.hpp"
 #include "server/jobs/analyse.hpp"
 #include "server/jobs/assess.hpp"
 #include "server/jobs/certify_case.hpp"
@@ -165,7 +166,13 @@ bool Runner::do_one(Lane& lane) {
 core::Result<void> Runner::conclude(Lane& lane, const store::Job& job,
                                     const core::Result<void>& done) {
   if (is_lost(lane)) return {};
-  if (!done && done.error().code == core::Errc::cancelled && ending())
+  const bool stopped = !done && done.error().code == core::Errc::cancelled && ending();
+  // Where files are kept is away: the job, which did not fail, waits until it is back.
+  const bool waits = !done && store::is_store_away(done.error());
+  if (waits)
+    log_(fmt::format("job {} of {} waits: {}", core::name(job.kind), job.subject,
+                     done.error().what));
+  if (stopped || waits)
     return store_.write(
         [&](store::Writing& tx) { return store::give_back_job(tx, job, core::utc_us()); });
   if (!done) {

@@ -15,7 +15,7 @@ core::Result<SourceVolume> released_volume(store::Store& store, const store::Obj
     return core::Error{
         core::Errc::conflict,
         "this volume is not released: a person must look at its pictures and release it first"};
-  auto file = TRY(volume::VolumeFile::open(objects.path_of(volume.sha256)));
+  auto file = TRY(volume::VolumeFile::open(TRY(objects.file(volume.sha256))));
   return SourceVolume{volume.name, volume.source, std::move(file)};
 }
 

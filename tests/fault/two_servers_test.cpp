@@ -1,25 +1,29 @@
 /// Two servers on one PostgreSQL database and one folder, one of them killed (SIGKILL) at random
 /// moments while a station hands trials over: the other goes on with the upload where it was
 /// acknowledged, nothing is lost, nothing is there twice. And one killed in the middle of a job:
-/// the other does it, once.
+/// the other does it, once. The same with objects in an S3 bucket, whose server is killed too.
 #include <gtest/gtest.h>
 #include <signal.h>
 
 #include <array>
 #include <atomic>
 #include <chrono>
+#include <cstdlib>
 #include <random>
 #include <thread>
+#include <vector>
 
 #include "kills.hpp"
 #include "tests/fault/hand_over.hpp"
 #include "tests/support/postgres/postgres_server.hpp"
+#include "tests/support/s3/s3_server.hpp"
 
 namespace tractus {
 namespace {
 using namespace fault;
 using test_support::Durable;
 using test_support::PostgresServer;
+using test_support::s3_server;
 
 const int kKills = kills(60);
 
@@ -46,16 +50,15 @@ bool becomes_zero(const ServedWorld& world, const std::string& sql) {
   return false;
 }
 
-TEST(TwoServers, OneKilledInAnUploadLosesNothingAndTheOtherGoesOn) {
-  PostgresServer postgres(Durable::yes);
-  KilledServer station(postgres.address(postgres.add_database()));
+/// A station hands trials over to two servers, of which one is killed again and again.
+void hand_over_to_killed_servers(KilledServer& station, int most_kills) {
   const auto& data = station.world().data;
   std::array servers{started(data), started(data)};
   std::array<Client, 2> clients;
   for (int i = 0; i < 2; ++i) clients[i].speak_to(servers[i]->port());
   station.sign_in(clients[0]);  // the other knows the session too
   std::mt19937 random(20260302);
-  for (int kill = 0; kill < kKills && !::testing::Test::HasFailure(); ++kill) {
+  for (int kill = 0; kill < most_kills && !::testing::Test::HasFailure(); ++kill) {
     const int which = std::uniform_int_distribution<int>(0, 1)(random);
     station.check(clients[which]);
     const int request = std::uniform_int_distribution<int>(1, 8)(random);
@@ -77,7 +80,7 @@ TEST(TwoServers, OneKilledInAnUploadLosesNothingAndTheOtherGoesOn) {
   }
   station.check(clients[0]);
   station.finish(clients[1]);
-  std::printf("%d kills, %d trials handed over\n", kKills, station.trials_done());
+  std::printf("%d kills, %d trials handed over\n", most_kills, station.trials_done());
   EXPECT_GT(station.trials_done(), 5) << "too few trials were finished to have met the commit";
   EXPECT_TRUE(becomes_zero(station.world(), "select count(*) from jobs where state <> 'done'"));
   EXPECT_EQ(number_from(station.world(), "select count(*) from trials where state <> 'assessed'"),
@@ -91,15 +94,103 @@ TEST(TwoServers, OneKilledInAnUploadLosesNothingAndTheOtherGoesOn) {
   EXPECT_EQ(audit.json()["holds"], true) << audit.body;
 }
 
-/// A trial long enough that scoring it takes a while.
-std::string hand_over_long_trial(Client& client, const ServedWorld& world) {
-  constexpr std::uint32_t kLong = 60'000;
+TEST(TwoServers, OneKilledInAnUploadLosesNothingAndTheOtherGoesOn) {
+  PostgresServer postgres(Durable::yes);
+  KilledServer station(postgres.address(postgres.add_database()));
+  hand_over_to_killed_servers(station, kKills);
+}
+
+/// Data folders that are made meanwhile have their objects in a bucket.
+class ObjectsInS3 {
+ public:
+  explicit ObjectsInS3(const std::string& prefix) {
+    ::setenv("TRACTUS_OBJECTS", s3_server().address(prefix).c_str(), 1);
+  }
+  ~ObjectsInS3() { ::unsetenv("TRACTUS_OBJECTS"); }
+  ObjectsInS3(const ObjectsInS3&) = delete;
+  ObjectsInS3& operator=(const ObjectsInS3&) = delete;
+};
+
+/// Leaves the objects of a data folder to the bucket alone.
+void empty_cache(const std::filesystem::path& data) {
+  for (const auto& entry : std::filesystem::directory_iterator(data / "objects"))
+    std::filesystem::remove_all(entry);
+}
+
+/// Every object that the records name is in the bucket, its bytes those of its SHA-256.
+void expect_verified(const std::filesystem::path& data) {
+  const Ended verified = run_program("tractus-server", {"verify", "--data", data});
+  EXPECT_EQ(verified.code, 0) << verified.out;
+}
+
+TEST(TwoServersOnAnObjectStore, OneKilledInAnUploadLosesNothingAndTheOtherGoesOn) {
+  const ObjectsInS3 there("killed-servers");
+  PostgresServer postgres(Durable::no);  // it is not killed
+  KilledServer station(postgres.address(postgres.add_database()));
+  hand_over_to_killed_servers(station, kKills / 2);
+  empty_cache(station.world().data);
+  expect_verified(station.world().data);
+  EXPECT_TRUE(std::filesystem::is_empty(station.world().data / "objects"));
+  const auto server = started(station.world().data);
+  Client client;
+  client.speak_to(server->port());
+  station.check(client);  // a trial's samples are read, hence fetched
+  EXPECT_FALSE(std::filesystem::is_empty(station.world().data / "objects"));
+}
+
+/// A trial whose pieces are all there, without its commit.
+std::string hand_over_pieces(Client& client, const ServedWorld& world, std::uint32_t samples) {
   const std::string id = core::new_id();
-  const std::string file = trial_bytes(world.folder, id, world.case_id, kLong);
+  const std::string file = trial_bytes(world.folder, id, world.case_id, samples);
   EXPECT_EQ(announce(client, world.station_1, id, world.case_id, file).status, 200);
   constexpr std::size_t kMost = 4u << 20;
   for (std::size_t at = 0; at < file.size(); at += kMost)
     EXPECT_EQ(send_piece(client, world.station_1, id, at, file.substr(at, kMost)).status, 200);
+  return id;
+}
+
+TEST(TwoServersOnAnObjectStore, TheStoreKilledInACommitIsSaidToBeAwayAndLosesNothing) {
+  const ObjectsInS3 there("killed-store");
+  PostgresServer postgres(Durable::no);  // it is not killed
+  const ServedWorld world(postgres.address(postgres.add_database()));
+  const auto server = started(world.data);
+  Client client;
+  client.speak_to(server->port());
+  const Headers admin = world.admin(client);
+  std::mt19937 random(20261127);
+  int refused = 0;
+  std::vector<std::string> acknowledged;
+  for (int kill = 0; kill < kKills / 6 && !::testing::Test::HasFailure(); ++kill) {
+    const std::string id = hand_over_pieces(client, world, kSamples);
+    const std::chrono::milliseconds within(std::uniform_int_distribution<int>(0, 30)(random));
+    std::thread killer([&] {
+      std::this_thread::sleep_for(within);
+      s3_server().kill_gateway();
+    });
+    const Answer first = commit(client, world.station_1, id);
+    killer.join();
+    s3_server().start();
+    if (first.status != 200) {
+      ++refused;
+      EXPECT_EQ(first.status, 503) << first.body;
+      const Answer second = commit(client, world.station_1, id);
+      EXPECT_EQ(second.status, 200) << second.body;
+    }
+    acknowledged.push_back(id);
+  }
+  std::printf("%d kills of the store, %d commits that were refused\n", kKills / 6, refused);
+  EXPECT_GT(refused, 0) << "no kill met a commit: the test shows nothing";
+  empty_cache(world.data);
+  expect_verified(world.data);
+  for (const std::string& id : acknowledged) {
+    const Answer signals = client.ask("GET", "/api/v1/trials/" + id + "/signals?points=400", admin);
+    EXPECT_EQ(signals.json()["t_s"].size(), kSamples) << signals.body.substr(0, 400);
+  }
+}
+
+/// A trial long enough that scoring it takes a while.
+std::string hand_over_long_trial(Client& client, const ServedWorld& world) {
+  const std::string id = hand_over_pieces(client, world, 60'000);
   EXPECT_EQ(commit(client, world.station_1, id).status, 200);
   return id;
 }
@@ -134,6 +225,32 @@ TEST(TwoServers, OneKilledInAJobLeavesItToTheOtherWhichDoesItOnce) {
   }
   std::printf("%d killed in the middle of a job\n", caught);
   EXPECT_GE(caught, 1) << "no kill met a job: the test shows nothing";
+}
+
+TEST(TwoServersOnAnObjectStore, AJobWhoseFileIsAwayWaitsAndIsDoneWhenTheStoreIsBack) {
+  const ObjectsInS3 there("waiting-job");
+  PostgresServer postgres(Durable::no);  // it is not killed
+  const ServedWorld world(postgres.address(postgres.add_database()));
+  bool caught = false;
+  for (int tries = 0; tries < 20 && !caught && !::testing::Test::HasFailure(); ++tries) {
+    auto server = started(world.data);
+    Client client;
+    client.speak_to(server->port());
+    hand_over_long_trial(client, world);
+    server->kill_now();
+    caught = number_from(world, "select count(*) from jobs where state <> 'done'") == 1;
+    if (!caught) continue;
+    empty_cache(world.data);
+    s3_server().kill_gateway();
+    server = started(world.data);
+    std::this_thread::sleep_for(std::chrono::seconds(5));  // its lease ends, it is tried
+    EXPECT_EQ(number_from(world, "select count(*) from jobs where state = 'failed'"), 0);
+    EXPECT_EQ(number_from(world, "select count(*) from trials where state = 'failed'"), 0);
+    s3_server().start();
+    EXPECT_TRUE(becomes_zero(world, "select count(*) from jobs where state <> 'done'"));
+    EXPECT_EQ(number_from(world, "select count(*) from trials where state <> 'assessed'"), 0);
+  }
+  EXPECT_TRUE(caught) << "no kill met a job: the test shows nothing";
 }
 
 }  // namespace

@@ -41,6 +41,11 @@ core::Result<void> add_object(Writing& tx, const std::string& sha256, std::uint6
   return {};
 }
 
+core::Result<std::uint64_t> object_size_bytes(Reading& tx, const std::string& sha256) {
+  auto rows = TRY(tx.query("select size_bytes from objects where sha256 = ?", {sha256}));
+  return rows.empty() ? 0 : rows.front().count(0);
+}
+
 core::Result<void> add_case(Writing& tx, const CaseSummary& summary,
                             const std::vector<CasePart>& parts, std::int64_t now_utc_us) {
   TRY(tx.query(

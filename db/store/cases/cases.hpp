@@ -72,5 +72,7 @@ core::Result<std::optional<CasePart>> case_part(Reading& tx, const std::string& 
 /// Records a file that is among the objects; an already recorded file stays unchanged.
 core::Result<void> add_object(Writing& tx, const std::string& sha256, std::uint64_t size_bytes,
                               std::int64_t now_utc_us);
+/// Bytes of a recorded file; 0 if none is recorded.
+core::Result<std::uint64_t> object_size_bytes(Reading& tx, const std::string& sha256);
 
 }  // namespace tractus::store

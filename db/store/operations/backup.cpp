@@ -75,14 +75,13 @@ core::Result<void> check_audit(Reading& tx, const AuditKey& key, const Anchors& 
 }
 
 std::string wrong_with(const Objects& objects, const ObjectEntry& entry) {
-  std::error_code failure;
-  const auto path = objects.path_of(entry.sha256);
-  const auto size = std::filesystem::file_size(path, failure);
-  if (failure) return fmt::format("object {}: is missing", entry.sha256);
-  if (size != entry.size_bytes)
-    return fmt::format("object {}: has {} bytes, {} were stored", entry.sha256, size,
+  const auto size = objects.size_of(entry.sha256);
+  if (!size) return fmt::format("object {}: {}", entry.sha256, size.error().what);
+  if (!*size) return fmt::format("object {}: is missing", entry.sha256);
+  if (**size != entry.size_bytes)
+    return fmt::format("object {}: has {} bytes, {} were stored", entry.sha256, **size,
                        entry.size_bytes);
-  auto sha256 = file_sha256(path);
+  auto sha256 = objects.kept_sha256(entry.sha256);
   if (!sha256) return fmt::format("object {}: {}", entry.sha256, sha256.error().what);
   return *sha256 == entry.sha256 ? "" : fmt::format("object {}: its bytes changed", entry.sha256);
 }

@@ -3,9 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <filesystem>
 
-#include "core/file.hpp"
 #include "core/require.hpp"
 #include "core/try.hpp"
 #include "db/store/people/erasure_steps.hpp"
@@ -117,13 +115,7 @@ Result<void> delete_file(Store& store, const Objects& objects, const PartialFile
   partials.remove(trial_id);
   auto used = TRY(store.read(
       [&](Reading& tx) { return tx.query("select 1 from objects where sha256 = ?", {sha256}); }));
-  const auto path = objects.path_of(sha256);
-  std::error_code failure;
-  if (used.empty() && std::filesystem::remove(path, failure))
-    TRY(core::sync_folder(path.parent_path()));
-  if (failure)
-    return Error{Errc::io,
-                 fmt::format("object {}: cannot be deleted: {}", sha256, failure.message())};
+  if (used.empty()) TRY(objects.remove(sha256));
   TRY(store.write_beside([&](Writing& tx) {
     return tx.query("update erased_trials set deleted = 1 where trial_id = ?", {trial_id});
   }));
@@ -244,7 +236,7 @@ Result<std::vector<std::string>> erasure_findings(Reading& tx, const Objects& ob
                    "(select 1 from objects "
                    "o where o.sha256 = e.sha256) order by e.sha256"));
   for (const Row& row : rows)
-    if (objects.has(row.text(0)))
+    if (TRY(objects.size_of(row.text(0))).has_value())
       out.push_back(
           fmt::format("object {}: is the file of an erased trial and still here", row.text(0)));
   return out;

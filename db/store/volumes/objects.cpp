@@ -5,11 +5,16 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <array>
 #include <cerrno>
 #include <functional>
+#include <mutex>
 
 #include "core/file.hpp"
+#include "core/require.hpp"
 #include "core/try.hpp"
+#include "db/store/volumes/cache_limit.hpp"
+#include "db/store/volumes/file_pieces.hpp"
 
 namespace tractus {
 namespace store {
@@ -46,18 +51,12 @@ bool write_all(int fd, std::uint64_t offset, core::ByteView bytes) {
 }
 
 /// Hands out a file in pieces.
-core::Result<void> each_piece(const fs::path& path,
-                              const std::function<bool(core::ByteView)>& take) {
-  const Descriptor file(path, O_RDONLY);
-  if (!file) return core::system_error(path, "cannot open");
-  core::Bytes piece(kPiece_bytes);
+core::Result<void> each_piece(const fs::path& path, const ObjectStore::Take& take) {
+  auto file = TRY(FilePieces::open(path));
   for (;;) {
-    const ssize_t n = ::read(file.fd(), piece.data(), piece.size());
-    if (n < 0 && errno == EINTR) continue;
-    if (n < 0) return core::system_error(path, "cannot read");
-    if (n == 0) return {};
-    if (!take(core::ByteView(piece).first(static_cast<std::size_t>(n))))
-      return core::system_error(path, "cannot copy");
+    const auto piece = TRY(file.next(kPiece_bytes));
+    if (piece.empty()) return {};
+    if (!take(piece)) return core::system_error(path, "cannot copy");
   }
 }
 
@@ -72,11 +71,75 @@ core::Result<fs::path> made_folder(const fs::path& path) {
   return path;
 }
 
+using Produce = std::function<core::Result<void>(const ObjectStore::Take&)>;
+
+/// A new file of what is produced, if that has this SHA-256: written beside, flushed, renamed.
+core::Result<void> write_checked(const fs::path& target, const std::string& sha256,
+                                 const std::string& source, const Produce& produce) {
+  const fs::path beside = target.string() + "." + core::hex(core::random_bytes(4)) + ".part";
+  core::Sha256 hash;
+  core::Result<void> outcome;
+  {
+    const Descriptor out(beside, O_WRONLY | O_CREAT | O_EXCL);
+    if (!out) return core::system_error(beside, "cannot create");
+    std::uint64_t offset = 0;
+    bool written = true;
+    outcome = produce([&](core::ByteView piece) {
+      hash.add(piece);
+      written = write_all(out.fd(), offset, piece);
+      offset += piece.size();
+      return written;
+    });
+    if (!written || (outcome && ::fsync(out.fd()) != 0))
+      outcome = core::system_error(beside, written ? "cannot flush" : "cannot write");
+  }
+  if (outcome && hash.hex() != sha256)
+    outcome =
+        core::Error{core::Errc::corrupt, fmt::format("{}: its SHA-256 is not {}", source, sha256)};
+  if (outcome && ::rename(beside.c_str(), target.c_str()) != 0)
+    outcome = core::system_error(target, "cannot put in place");
+  if (!outcome) {
+    ::unlink(beside.c_str());
+    return outcome;
+  }
+  return core::sync_folder(target.parent_path());
+}
+
+/// The file of a cache, its use noted.
+const fs::path& used(const fs::path& path) {
+  ::utimensat(AT_FDCWD, path.c_str(), nullptr, 0);
+  return path;
+}
+
 }  // namespace
 
-core::Result<Objects> Objects::open(const fs::path& data) {
+/// An object store, and what its cache needs.
+struct Objects::Beyond {
+  std::unique_ptr<ObjectStore> store;
+  std::array<std::mutex, 16> fetching = {};  ///< by the first digit: an object is fetched once
+  std::unique_ptr<CacheLimit> limit = {};
+
+  std::mutex& fetch_of(const std::string& sha256) {
+    return fetching[sha256.front() <= '9' ? sha256.front() - '0' : sha256.front() - 'a' + 10];
+  }
+};
+
+Objects::Objects(fs::path root, std::unique_ptr<Beyond> beyond)
+    : root_(std::move(root)), beyond_(std::move(beyond)) {}
+Objects::~Objects() = default;
+Objects::Objects(Objects&&) noexcept = default;
+Objects& Objects::operator=(Objects&&) noexcept = default;
+
+core::Result<Objects> Objects::open(const fs::path& data, std::unique_ptr<ObjectStore> beyond) {
   auto root = TRY(made_folder(data / "objects"));
-  return Objects(std::move(root));
+  if (!beyond) return Objects(std::move(root), nullptr);
+  auto kept = std::make_unique<Beyond>();
+  kept->store = std::move(beyond);
+  return Objects(std::move(root), std::move(kept));
+}
+
+void Objects::limit_cache(std::uint64_t most_bytes) {
+  if (beyond_) beyond_->limit = std::make_unique<CacheLimit>(root_, most_bytes);
 }
 
 fs::path Objects::path_of(const std::string& sha256) const {
@@ -84,7 +147,7 @@ fs::path Objects::path_of(const std::string& sha256) const {
   return root_ / sha256.substr(0, 2) / sha256.substr(2);
 }
 
-bool Objects::has(const std::string& sha256) const {
+bool Objects::here(const std::string& sha256) const {
   std::error_code ignored;
   return fs::is_regular_file(path_of(sha256), ignored);
 }
@@ -97,46 +160,71 @@ core::Result<void> Objects::folder_for(const std::string& sha256) const {
   return core::sync_folder(root_);
 }
 
+core::Result<fs::path> Objects::file(const std::string& sha256) const {
+  const fs::path path = path_of(sha256);
+  if (!beyond_) return path;
+  if (here(sha256)) return used(path);
+  const std::lock_guard lock(beyond_->fetch_of(sha256));
+  if (here(sha256)) return used(path);
+  TRY(folder_for(sha256));
+  TRY(write_checked(path, sha256, "object store", [&](const ObjectStore::Take& take) {
+    return beyond_->store->read(sha256, 0, std::nullopt, take);
+  }));
+  if (beyond_->limit) beyond_->limit->added(path);
+  return path;
+}
+
+core::Result<std::optional<std::uint64_t>> Objects::size_of(const std::string& sha256) const {
+  if (beyond_) return beyond_->store->size_of(sha256);
+  std::error_code failure;
+  const auto size = fs::file_size(path_of(sha256), failure);
+  return failure ? std::nullopt : std::optional<std::uint64_t>(size);
+}
+
+core::Result<std::string> Objects::kept_sha256(const std::string& sha256) const {
+  if (!beyond_) return file_sha256(path_of(sha256));
+  core::Sha256 hash;
+  TRY(beyond_->store->read(sha256, 0, std::nullopt,
+                           [&](core::ByteView piece) { return hash.add(piece), true; }));
+  return hash.hex();
+}
+
+/// What the folder has, to the place where objects are kept.
+core::Result<void> Objects::put_beyond(const std::string& sha256) const {
+  if (!beyond_) return {};
+  const fs::path path = path_of(sha256);
+  TRY(beyond_->store->put(sha256, used(path)));
+  if (beyond_->limit) beyond_->limit->added(path);
+  return {};
+}
+
 core::Result<std::string> Objects::put(core::ByteView bytes) const {
   const std::string sha256 = core::sha256(bytes);
-  if (has(sha256)) return sha256;
-  TRY(folder_for(sha256));
-  TRY(core::write_file(path_of(sha256), bytes));
+  if (!here(sha256)) {
+    TRY(folder_for(sha256));
+    TRY(core::write_file(path_of(sha256), bytes));
+  }
+  TRY(put_beyond(sha256));
   return sha256;
 }
 
 core::Result<void> Objects::copy_in(const fs::path& file, const std::string& sha256) const {
-  if (has(sha256)) return {};
+  if (!here(sha256)) {
+    TRY(folder_for(sha256));
+    TRY(write_checked(path_of(sha256), sha256, file.string(),
+                      [&](const ObjectStore::Take& take) { return each_piece(file, take); }));
+  }
+  return put_beyond(sha256);
+}
+
+core::Result<void> Objects::copy_from(const Objects& source, const std::string& sha256) const {
+  if (beyond_) return beyond_->store->put(sha256, TRY(source.file(sha256)));
+  if (here(sha256)) return {};
+  if (!source.beyond_) return copy_in(source.path_of(sha256), sha256);
   TRY(folder_for(sha256));
-  const fs::path target = path_of(sha256);
-  const fs::path beside = target.string() + "." + core::hex(core::random_bytes(4)) + ".part";
-  core::Sha256 hash;
-  core::Result<void> outcome;
-  {
-    const Descriptor out(beside, O_WRONLY | O_CREAT | O_EXCL);
-    if (!out) return core::system_error(beside, "cannot create");
-    std::uint64_t offset = 0;
-    auto copied = each_piece(file, [&](core::ByteView piece) {
-      hash.add(piece);
-      const bool written = write_all(out.fd(), offset, piece);
-      offset += piece.size();
-      return written;
-    });
-    if (!copied)
-      outcome = copied.error();
-    else if (::fsync(out.fd()) != 0)
-      outcome = core::system_error(beside, "cannot flush");
-  }
-  if (outcome && hash.hex() != sha256)
-    outcome = core::Error{core::Errc::corrupt,
-                          fmt::format("{}: its SHA-256 is not {}", file.string(), sha256)};
-  if (outcome && ::rename(beside.c_str(), target.c_str()) != 0)
-    outcome = core::system_error(target, "cannot put in place");
-  if (!outcome) {
-    ::unlink(beside.c_str());
-    return outcome;
-  }
-  return core::sync_folder(target.parent_path());
+  return write_checked(path_of(sha256), sha256, "object store", [&](const ObjectStore::Take& take) {
+    return source.beyond_->store->read(sha256, 0, std::nullopt, take);
+  });
 }
 
 core::Result<void> Objects::link_in(const fs::path& file, const std::string& sha256) const {
@@ -144,7 +232,16 @@ core::Result<void> Objects::link_in(const fs::path& file, const std::string& sha
   const fs::path target = path_of(sha256);
   if (::link(file.c_str(), target.c_str()) != 0 && errno != EEXIST)
     return core::system_error(target, "cannot put in place");
-  return core::sync_folder(target.parent_path());
+  TRY(core::sync_folder(target.parent_path()));
+  return put_beyond(sha256);
+}
+
+core::Result<void> Objects::remove(const std::string& sha256) const {
+  if (beyond_) TRY(beyond_->store->remove(sha256));
+  const fs::path path = path_of(sha256);
+  if (::unlink(path.c_str()) == 0) return core::sync_folder(path.parent_path());
+  if (errno == ENOENT || errno == ENOTDIR) return {};
+  return core::system_error(path, "cannot remove");
 }
 
 core::Result<PartialFiles> PartialFiles::open(const fs::path& data) {

@@ -52,7 +52,7 @@ core::Result<http::Response> part_named(const Call& call, const std::string& par
     return core::Error{core::Errc::forbidden, "this part is secret"};
   }
   const bool json = part_name.ends_with(".json");
-  auto response = http::file_response(call.backend.objects.path_of(part->sha256), call.request,
+  auto response = http::file_response(TRY(call.backend.objects.file(part->sha256)), call.request,
                                       json ? "application/json" : "application/octet-stream");
   if (response)
     response->with("Cache-Control", part->secret ? "no-store" : kForEver)

@@ -62,7 +62,7 @@ core::Result<volume::VolumeFile> volume_of(Backend& backend, const std::string& 
   const auto part = std::ranges::find_if(definition.parts, is_volume);
   if (part == definition.parts.end())
     return core::Error{core::Errc::not_found, "case " + case_id + " has no volume"};
-  return volume::VolumeFile::open(backend.objects.path_of(part->sha256));
+  return volume::VolumeFile::open(TRY(backend.objects.file(part->sha256)));
 }
 
 }  // namespace

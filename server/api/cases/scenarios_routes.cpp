@@ -106,7 +106,7 @@ Result<Scenario> contents(Backend& backend, const std::string& id) {
   const auto version = TRY(
       backend.store.read([&](store::Reading& tx) { return store::scenario_version_of(tx, id); }));
   if (!version) return no_scenario(id);
-  auto json = TRY(core::read_json(backend.objects.path_of(version->sha256)));
+  auto json = TRY(core::read_json(TRY(backend.objects.file(version->sha256))));
   return Scenario::from_json(json, "scenario " + id.substr(0, 12) + ": ");
 }
 

@@ -155,7 +155,7 @@ Result<void> check_still_released(Backend& backend, const std::string& study,
   const auto released = TRY(released_trials(backend, study, store::Tier::metrics));
   std::set<std::string, std::less<>> ids;
   for (const auto& trial : released.all()) ids.insert(trial.id);
-  auto rows = TRY(core::CsvReader::open(backend.objects.path_of(data), kMostRow_bytes));
+  auto rows = TRY(core::CsvReader::open(TRY(backend.objects.file(data)), kMostRow_bytes));
   std::vector<std::string_view> cells;
   std::size_t gone = 0;
   TRY(rows.next(cells));  // the header
@@ -167,7 +167,7 @@ Result<void> check_still_released(Backend& backend, const std::string& study,
 }
 
 Result<http::Response> dictionary_response(Backend& backend, const store::AnalysisRun& run) {
-  const auto description = TRY(core::read_json(backend.objects.path_of(*run.description)));
+  const auto description = TRY(core::read_json(TRY(backend.objects.file(*run.description))));
   auto response = json_response(assessment::dictionary_of_marked(description));
   response.with("Content-Disposition", "attachment; filename=\"dictionary.json\"");
   return response;

@@ -42,7 +42,7 @@ Result<Json> analysis_json(const Call& call, const store::AnalysisRun& run) {
        {std::pair{"data", &run.description}, std::pair{"result", &run.result}}) {
     out[key] = nullptr;
     if (!*object) continue;
-    auto read = TRY(core::read_json(call.backend.objects.path_of(**object)));
+    auto read = TRY(core::read_json(TRY(call.backend.objects.file(**object))));
     out[key] = std::move(read);
   }
   const auto before = TRY(call.backend.store.read(
@@ -84,7 +84,7 @@ Result<http::Response> plan_of(const Call& call) {
   if (!plan) return absent("plan", id);
   const auto runs = TRY(call.backend.store.read(
       [&](store::Reading& tx) -> Result<Runs> { return store::analyses_of_plan(tx, id); }));
-  auto file = TRY(core::read_json(call.backend.objects.path_of(plan->plan)));
+  auto file = TRY(core::read_json(TRY(call.backend.objects.file(plan->plan))));
   Json out = plan_json(*plan);
   out["plan"] = std::move(file);
   out["analyses"] = Json::array();
@@ -134,7 +134,7 @@ Result<http::Response> part_of(const Call& call) {
   const auto& object = page ? run.report : json ? run.result : run.data;
   if (!object) return absent("finished analysis", run.id);
   if (!page && !json) TRY(check_still_released(call.backend, run.study, *object));
-  auto response = http::file_response(call.backend.objects.path_of(*object), call.request,
+  auto response = http::file_response(TRY(call.backend.objects.file(*object)), call.request,
                                       page   ? "text/html; charset=utf-8"
                                       : json ? "application/json"
                                              : "text/csv; charset=utf-8");

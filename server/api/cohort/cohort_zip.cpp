@@ -225,7 +225,7 @@ Result<void> CohortArchive::lay_out(Backend& backend, const CalledOff& called_of
   for (Array& array : arrays_) {
     checksums.emplace_back();
     if (array.rate_Hz > 0.0) {
-      auto rows = TRY(SampleRows::open(backend.objects.path_of(array.sha256), array.rate_Hz));
+      auto rows = TRY(SampleRows::open(TRY(backend.objects.file(array.sha256)), array.rate_Hz));
       const auto counted = TRY(count_rows(std::move(rows), array.rig, called_off));
       array.rows = counted.rows;
       checksums.back() = counted.crc32;
@@ -260,7 +260,7 @@ OpenEntry CohortArchive::opener(const Backend& backend) {
     if (entry < self->tables_.size())
       return Content(std::make_unique<TableContent>(self->tables_[entry].content));
     const Array& array = self->arrays_[entry - self->tables_.size()];
-    auto rows = TRY(SampleRows::open(backend.objects.path_of(array.sha256), array.rate_Hz));
+    auto rows = TRY(SampleRows::open(TRY(backend.objects.file(array.sha256)), array.rate_Hz));
     return Content(
         std::make_unique<ArrayContent>(npy_head(array.rig, array.rows), std::move(rows)));
   };

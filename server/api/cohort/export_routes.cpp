@@ -54,7 +54,8 @@ Result<http::Response> samples_of(const Call& call, const std::string& sha256,
                                   std::uint64_t samples) {
   auto file =
       TRY(http::scratch_file(*call.backend.scratch, call.caller.id, samples_npy_bytes(samples)));
-  TRY(write_samples_npy(call.backend.objects.path_of(sha256), call.number("rate_Hz"), file->path));
+  TRY(write_samples_npy(TRY(call.backend.objects.file(sha256)), call.number("rate_Hz"),
+                        file->path));
   return scratch_response(std::move(file), "application/octet-stream", "samples.npy");
 }
 

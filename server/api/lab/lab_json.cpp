@@ -90,7 +90,7 @@ Result<Json> whole_run_json(const Call& call, const store::LabRun& run) {
   Json out = run_json(run, published);
   if (run.ranking) out["ranking"] = core::stored_json(*run.ranking);
   if (run.result) {
-    auto kept = TRY(core::read_json(call.backend.objects.path_of(*run.result)));
+    auto kept = TRY(core::read_json(TRY(call.backend.objects.file(*run.result))));
     out.update(found_json(std::move(kept)));
   }
   return out;

@@ -76,7 +76,7 @@ Result<http::Response> model_file(const Call& call) {
   const auto model = TRY(call.backend.store.read(
       [&](store::Reading& tx) { return store::model_of(tx, call.text("id")); }));
   if (!model) return absent("model", call.text("id"));
-  return http::file_response(call.backend.objects.path_of(model->sha256), call.request,
+  return http::file_response(TRY(call.backend.objects.file(model->sha256)), call.request,
                              "application/json");
 }
 

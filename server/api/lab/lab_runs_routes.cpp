@@ -147,7 +147,7 @@ Result<http::Response> one_run(const Call& call) {
 Result<http::Response> report_of(const Call& call) {
   const auto run = TRY(run_of(call));
   if (!run.report) return absent("report of the run", run.id);
-  auto response = TRY(http::file_response(call.backend.objects.path_of(*run.report), call.request,
+  auto response = TRY(http::file_response(TRY(call.backend.objects.file(*run.report)), call.request,
                                           "text/html; charset=utf-8"));
   return as_report(std::move(response));
 }
@@ -155,7 +155,7 @@ Result<http::Response> report_of(const Call& call) {
 Result<http::Response> better_model(const Call& call) {
   const auto run = TRY(run_of(call));
   if (!run.model) return absent("model of the run", run.id);
-  return http::file_response(call.backend.objects.path_of(*run.model), call.request,
+  return http::file_response(TRY(call.backend.objects.file(*run.model)), call.request,
                              "application/json");
 }
 
@@ -175,7 +175,7 @@ Result<http::Response> signals(const Call& call) {
   const std::string& side = call.text("side");
   if (side != "before" && side != "after")
     return Error{Errc::bad_input, "side: before or after is expected"};
-  const auto view = TRY(lab_io::view_samples(call.backend.objects.path_of(*run.samples),
+  const auto view = TRY(lab_io::view_samples(TRY(call.backend.objects.file(*run.samples)),
                                              {.trial = call.text("trial"),
                                               .channel = call.text("channel"),
                                               .after = side == "after",
@@ -219,7 +219,7 @@ Result<Words> version_words(const Call& call) {
 Result<std::pair<std::string, std::uint64_t>> named_model(const Call& call,
                                                           const store::LabRun& run,
                                                           std::string& name) {
-  auto json = TRY(core::read_json(call.backend.objects.path_of(*run.model)));
+  auto json = TRY(core::read_json(TRY(call.backend.objects.file(*run.model))));
   if (name.empty()) name = json.value("name", "");
   json["name"] = name;
   const std::string text = json.dump(2) + "\n";

@@ -192,7 +192,7 @@ TEST_F(Leaving, ErasingLeavesNoNameNoTrialAndNoFile) {
   finish();
   EXPECT_TRUE(findings().empty());
   EXPECT_FALSE(trial(done.trial));
-  EXPECT_FALSE(objects_.has(done.announced.sha256));
+  EXPECT_FALSE(*objects_.size_of(done.announced.sha256));
   EXPECT_EQ(places_of(kName), std::vector<std::string>{});
   EXPECT_EQ(places_of(kBadge), std::vector<std::string>{});
   EXPECT_EQ(get("ann", "/accounts/" + kZoe + "/data").status, 404);
@@ -211,7 +211,7 @@ TEST_F(Leaving, AnonymisingKeepsTrialsThatNothingLinksToThePerson) {
   EXPECT_TRUE(findings().empty());
   ASSERT_TRUE(trial(done.trial));
   EXPECT_EQ(trial(done.trial)->summary.person, "");
-  EXPECT_TRUE(objects_.has(done.announced.sha256));
+  EXPECT_TRUE(*objects_.size_of(done.announced.sha256));
   EXPECT_EQ(places_of(kName), std::vector<std::string>{});
   const auto linked = store_.read([](store::Reading& tx) {
     return tx.query("select 1 from assignment_people where account_id = ? or participant = 'Pzoe'",
@@ -255,7 +255,7 @@ TEST_F(Leaving, AFileThatWasPutInPlaceMeanwhileIsDeletedToo) {
   ASSERT_EQ(leave("erase").status, 202);
   EXPECT_EQ(commit_upload(backend_, kStation, half.trial).error().code, core::Errc::conflict);
   finish();
-  EXPECT_FALSE(objects_.has(half.announced.sha256));
+  EXPECT_FALSE(*objects_.size_of(half.announced.sha256));
   EXPECT_EQ(partials_.ids(), std::vector<std::string>{});
 }
 

@@ -8,6 +8,7 @@
 #include "core/clock.hpp"
 #include "core/csv.hpp"
 #include "core/try.hpp"
+#include "db/store/cases/cases.hpp"
 #include "db/store/finding/saved_views.hpp"
 #include "db/store/people/consent.hpp"
 #include "db/store/people/invitations.hpp"
@@ -57,7 +58,7 @@ std::string line_of(const std::vector<std::string>& cells) {
   return out + "\r\n";
 }
 
-Result<OwnTrial> own_trial(store::Reading& tx, const Backend& backend, const std::string& id) {
+Result<OwnTrial> own_trial(store::Reading& tx, const std::string& id) {
   OwnTrial out;
   auto record = TRY(store::trial_of(tx, id));
   core::require(record.has_value(), "a listed trial is there");
@@ -66,9 +67,7 @@ Result<OwnTrial> own_trial(store::Reading& tx, const Backend& backend, const std
   out.comments = TRY(store::comments_of(tx, id));
   out.requests = TRY(store::rating_requests(tx, id));
   out.ratings = TRY(store::ratings_of(tx, id));
-  std::error_code missing;
-  out.file_bytes = std::filesystem::file_size(backend.objects.path_of(out.record.sha256), missing);
-  if (missing) out.file_bytes = 0;
+  out.file_bytes = TRY(store::object_size_bytes(tx, out.record.sha256));
   return out;
 }
 
@@ -217,7 +216,7 @@ Result<OwnData> read_own(Backend& backend, const store::Account& person) {
     auto listed = TRY(store::trials_before(tx, std::numeric_limits<std::int64_t>::max(),
                                            kMostTrials, {.seen_by = person.id}));
     std::ranges::reverse(listed);
-    for (const auto& one : listed) out.trials.push_back(TRY(own_trial(tx, backend, one.id)));
+    for (const auto& one : listed) out.trials.push_back(TRY(own_trial(tx, one.id)));
     const std::uint64_t all = TRY(trials_done(tx, person.id));
     out.held_back = all - std::min<std::uint64_t>(all, out.trials.size());
     const auto cohorts = TRY(store::cohorts_of(tx, person.id));
@@ -296,9 +295,10 @@ Result<void> add_recordings(lab_io::ZipFile& zip, const Backend& backend, const 
                             const Part& part) {
   for (std::size_t i = part.first; i < part.end; ++i) {
     const store::TrialRecord& record = data.trials[i].record;
-    if (!backend.objects.has(record.sha256))
+    if (!TRY(backend.objects.size_of(record.sha256)).has_value())
       return Error{Errc::corrupt, "the recording of trial " + record.summary.id + " is missing"};
-    TRY(zip.add("trials/" + record.summary.id + ".ttrial", backend.objects.path_of(record.sha256)));
+    TRY(zip.add("trials/" + record.summary.id + ".ttrial",
+                TRY(backend.objects.file(record.sha256))));
   }
   return {};
 }

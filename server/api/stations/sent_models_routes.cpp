@@ -127,7 +127,7 @@ Result<store::ModelVersion> own_model(const Call& call) {
 
 Result<http::Response> file_for_station(const Call& call) {
   auto model = TRY(own_model(call));
-  return http::file_response(call.backend.objects.path_of(model.sha256), call.request,
+  return http::file_response(TRY(call.backend.objects.file(model.sha256)), call.request,
                              "application/json");
 }
 

@@ -16,7 +16,7 @@ core::Result<trial::Signals> decode(Backend& backend, const store::TrialRecord& 
     line = trial::TractLine{facts.definition.tract.entry_m, facts.definition.tract.axis};
   }
   trial::Signals signals(header, line);
-  TRY(trial::scan_trial(backend.objects.path_of(trial.sha256),
+  TRY(trial::scan_trial(TRY(backend.objects.file(trial.sha256)),
                         [&](const trial::Block& block) { signals.add(block); },
                         {.max_samples = kMaxTrialSamples, .max_bytes = kMaxTrial_bytes}));
   return signals;

@@ -52,7 +52,7 @@ Result<volume::VolumeFile> pictured(const Call& call) {
   if (v.state == VolumeState::held && !decides && call.caller.id != v.made_by_id)
     return Error{Errc::forbidden,
                  "this volume is held: a person must look at its pictures and release it first"};
-  return volume::VolumeFile::open(call.backend.objects.path_of(v.sha256));
+  return volume::VolumeFile::open(TRY(call.backend.objects.file(v.sha256)));
 }
 
 Result<http::Response> list_volumes(const Call& call) {
@@ -87,11 +87,10 @@ Result<http::Response> decided(const Call& call, const store::Decision& decision
         return store::volume_of(tx, call.text("id"));
       }));
   if (!to_remove.empty()) {
-    std::error_code failure;
-    std::filesystem::remove(call.backend.objects.path_of(to_remove), failure);
-    if (failure)
-      return Error{Errc::io,
-                   "the volume was refused, but its file cannot be removed: " + failure.message()};
+    if (auto removed = call.backend.objects.remove(to_remove); !removed)
+      return Error{
+          removed.error().code,
+          "the volume was refused, but its file cannot be removed: " + removed.error().what};
   }
   return json_response(volume_json(done.value()));
 }
