@@ -3,10 +3,14 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <cmath>
+#include <limits>
 
 namespace tractus {
 namespace statistics {
 namespace {
+
+constexpr int kMostNewton = 6;
+constexpr double kSameCurvature = 1e-5;  // of the distance, about standard errors
 
 /// f at x + Σ aᵢ eᵢ for up to two coordinates.
 double shifted(const ScalarField& f, Vector x, Eigen::Index i, double a, Eigen::Index j = 0,
@@ -70,30 +74,45 @@ void quasi_newton(const Smooth& f, int most_steps, Minimum& at) {
   }
 }
 
-/// True where the last step was small: the minimum is reached.
+/// Newton's steps, on second derivatives that are taken anew after a long one only: they are most
+/// of the work, and near the minimum hardly change. True where the last step was small: the minimum
+/// is reached.
 bool newton(const Smooth& f, Minimum& at) {
-  for (int k = 0; k < 6; ++k) {
+  double moved = std::numeric_limits<double>::infinity();  // since the second derivatives
+  const auto curvature = [&] {
+    if (moved <= kSameCurvature) return;
+    at.hessian = f.hessian(at.x);
+    moved = 0.0;
+  };
+  const auto reached = [&] {
+    curvature();
+    return true;
+  };
+  for (int k = 0; k < kMostNewton; ++k) {
     const Vector gradient = f.gradient(at.x);
-    const Eigen::LDLT<Matrix> hessian(f.hessian(at.x));
+    curvature();
+    const Eigen::LDLT<Matrix> hessian(at.hessian);
     if (hessian.info() != Eigen::Success || !hessian.isPositive()) return false;
     const Vector move = -hessian.solve(gradient);
     if (!move.allFinite()) return false;
     const double value = f.value(at.x + move);
     if (!(value <= at.value + 10.0 * noise(at.value))) {
       // So near the minimum the slope tells more than the value, which is a sum of many terms.
-      const bool near = move.norm() < 1e-5;
-      if (near) at.x += move;
-      return near;
+      if (!(move.norm() < 1e-5)) return false;
+      at.x += move;
+      moved += move.norm();
+      return reached();
     }
     at.x += move;
     at.value = value;
-    if (move.norm() < 1e-9 * (1.0 + at.x.norm())) return true;
+    moved += move.norm();
+    if (move.norm() < 1e-9 * (1.0 + at.x.norm())) return reached();
   }
-  return true;
+  return reached();
 }
 
 Minimum minimum(const Smooth& f, const Vector& start, int most_steps) {
-  Minimum at{start, f.value(start), false};
+  Minimum at{start, f.value(start), {}, false};
   if (start.size() == 0) return at.converged = true, at;
   quasi_newton(f, most_steps, at);
   at.converged = newton(f, at);

@@ -28,6 +28,7 @@ Matrix hessian_of_gradient(const VectorField& gradient, const Vector& x, double 
 struct Minimum {
   Vector x;
   double value = 0.0;
+  Matrix hessian;  ///< at x, or within 1e-5 of it; empty or elsewhere unless converged
   bool converged = false;
 };
 
