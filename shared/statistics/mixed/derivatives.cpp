@@ -10,7 +10,9 @@ namespace statistics {
 namespace {
 
 constexpr int kMostNewton = 6;
-constexpr double kSameCurvature = 1e-5;  // of the distance, about standard errors
+// Second derivatives by differences of a known gradient are the same within this distance, about
+// standard errors; those by differences of values are taken anew at each step.
+constexpr double kSameCurvature = 1e-5;
 
 /// f at x + Σ aᵢ eᵢ for up to two coordinates.
 double shifted(const ScalarField& f, Vector x, Eigen::Index i, double a, Eigen::Index j = 0,
@@ -47,6 +49,7 @@ struct Smooth {
   const ScalarField& value;
   VectorField gradient;
   std::function<Matrix(const Vector&)> hessian;
+  double same_curvature = 0.0;  // distance within which second derivatives are not taken anew
 };
 
 void quasi_newton(const Smooth& f, int most_steps, Minimum& at) {
@@ -80,12 +83,12 @@ void quasi_newton(const Smooth& f, int most_steps, Minimum& at) {
 bool newton(const Smooth& f, Minimum& at) {
   double moved = std::numeric_limits<double>::infinity();  // since the second derivatives
   const auto curvature = [&] {
-    if (moved <= kSameCurvature) return;
+    if (moved <= f.same_curvature) return;
     at.hessian = f.hessian(at.x);
     moved = 0.0;
   };
   const auto reached = [&] {
-    curvature();
+    if (f.same_curvature > 0.0) curvature();
     return true;
   };
   for (int k = 0; k < kMostNewton; ++k) {
@@ -173,8 +176,9 @@ Minimum minimise(const ScalarField& f, const Vector& start, double step, int mos
 Minimum minimise(const ScalarField& f, const VectorField& gradient, const Vector& start,
                  double step, int most_steps) {
   return minimum(
-      {f, gradient, [&](const Vector& x) { return hessian_of_gradient(gradient, x, step); }}, start,
-      most_steps);
+      {f, gradient, [&](const Vector& x) { return hessian_of_gradient(gradient, x, step); },
+       kSameCurvature},
+      start, most_steps);
 }
 
 }  // namespace statistics
