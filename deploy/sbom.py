@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
 """Lists of components (SPDX 2.3) and licences for the packages that deploy/packages makes.
 
-    deploy/sbom.py --version 0.1.0 --out FOLDER --web web server=PROGRAM,… station=… tools=… web=
+    deploy/sbom.py --version 0.1.0 --out FOLDER --web web [--linked tools=LIST] server=PROGRAM,… station=… tools=… web=
 
 Writes FOLDER/NAME/sbom.spdx.json and FOLDER/NAME/copyright for each NAME. Components are the Debian packages of the shared
-libraries that a program loads (ldd, dpkg), those whose headers are compiled in, and the npm packages that the pages hold. The
-time is SOURCE_DATE_EPOCH.
+libraries that a program or shared object loads (ldd, dpkg), those whose headers are compiled in, those that LIST names because they
+are linked in, and the npm packages that the pages hold. The time is SOURCE_DATE_EPOCH.
 """
 import argparse
 import hashlib
@@ -24,13 +24,14 @@ def said(*words):
     return subprocess.run(words, capture_output=True, text=True, check=True).stdout
 
 
-def debian_package(name):
-    """Name, version, licences as its copyright file names them, and the package address of a Debian package."""
+def debian_package(name, held):
+    """Name, version, licences as its copyright file names them, and the package address of a Debian package; their texts too if
+    its code is held in ours."""
     version, architecture = said("dpkg-query", "-W", "-f", "${Version} ${Architecture}", name).split()
     base = name.split(":")[0]
     text = Path(f"/usr/share/doc/{base}/copyright").read_text(errors="replace")
     licences = sorted(set(re.findall(r"^License:\s*(\S.*)$", text, re.M)))
-    return {"name": base, "version": version, "licences": licences, "texts": [text.strip()] if name in HEADERS else [],
+    return {"name": base, "version": version, "licences": licences, "texts": [text.strip()] if held else [],
             "address": f"pkg:deb/debian/{base}@{version}?arch={architecture}"}
 
 
@@ -100,12 +101,17 @@ def main():
     parser.add_argument("--version", required=True)
     parser.add_argument("--out", type=Path, required=True)
     parser.add_argument("--web", type=Path, required=True, help="folder of the pages' sources")
+    parser.add_argument("--linked", action="append", default=[], metavar="NAME=LIST",
+                        help="file with the Debian packages whose code is linked into component NAME, one a line")
     parser.add_argument("components", nargs="+", metavar="NAME=PROGRAM,…")
     options = parser.parse_args()
+    linked = {name: Path(path).read_text().split() for name, path in (one.split("=") for one in options.linked)}
     for component in options.components:
         name, programs = component.split("=")
         programs = [one for one in programs.split(",") if one]
-        parts = [debian_package(one) for one in [*libraries(programs), *HEADERS]] if programs else list(npm_packages(options.web))
+        held = sorted({*HEADERS, *linked.get(name, [])})
+        parts = ([debian_package(one, False) for one in libraries(programs)] + [debian_package(one, True) for one in held]
+                 if programs else list(npm_packages(options.web)))
         folder = options.out / name
         folder.mkdir(parents=True, exist_ok=True)
         (folder / "sbom.spdx.json").write_text(json.dumps(spdx(f"tractus-{name}", options.version, parts), indent=1) + "\n")

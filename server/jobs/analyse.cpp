@@ -119,7 +119,8 @@ Result<void> analyse(store::Store& store, const store::Objects& objects,
                      const std::optional<store::PseudonymKey>& key, const std::string& analysis_id,
                      const std::function<bool()>& ending) {
   auto run = TRY(asked_analysis(store, analysis_id));
-  if (run.state != store::WorkState::queued && run.state != store::WorkState::running) return {};
+  if (run.state != store::AnalysisState::queued && run.state != store::AnalysisState::running)
+    return {};
   bool stopped = false;  // by a person
   const auto note = [&](double share) -> Result<void> {
     stopped = !TRY(store.write([&](store::Writing& tx) {

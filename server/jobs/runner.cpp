@@ -38,7 +38,8 @@ core::Result<void> show_failure(store::Writing& tx, const store::Job& job,
           tx, job.subject, cancelled ? store::LabRunState::cancelled : store::LabRunState::failed,
           error.what, core::utc_us());
     case JobKind::analysis:
-      return store::fail_analysis(tx, job.subject, error.what, core::utc_us());
+      return store::end_analysis(tx, job.subject, store::AnalysisState::failed, error.what,
+                                 core::utc_us());
     case JobKind::making:
       return store::fail_making(tx, job.subject, error.what, core::utc_us());
     case JobKind::felt:  // the case stays untried, and its page says so

@@ -206,7 +206,7 @@ class CuttingServer(http.server.ThreadingHTTPServer):
     def __init__(self):
         super().__init__(("127.0.0.1", 0), Handler)
         self.content, self.cuts, self.cut_bytes, self.runs, self.tag = cohort_zip(), 0, 40_000, 0, None
-        self.stopped = 0
+        self.stopped, self.stopped_by = 0, None
         threading.Thread(target=self.serve_forever, daemon=True).start()
 
     @property
@@ -246,7 +246,7 @@ class Handler(http.server.BaseHTTPRequestHandler):
     def do_POST(self):
         if self.path == "/api/v1/cohort/analyses/abc/stop":
             self.server.stopped += 1
-            return self.say(json.dumps({"id": "abc", "state": "failed"}).encode())
+            return self.say(json.dumps({"id": "abc", "state": "cancelled"}).encode())
         asked = json.loads(self.rfile.read(int(self.headers["Content-Length"])))
         if asked.get("formula") == "correct ~ nothing":
             return self.refuse(400, "formula: there is no column nothing", "bad_input")
@@ -271,6 +271,8 @@ class Handler(http.server.BaseHTTPRequestHandler):
             return self.say_cohort()
         if path.startswith("/export/cohort.zip"):
             return self.refuse(400, "tier: summary, metrics, reduced or full is expected", "bad_input")
+        if path == "/cohort/analyses/abc" and server.stopped_by:
+            return self.say(json.dumps({"id": "abc", "state": "cancelled", "error": f"stopped by {server.stopped_by}"}).encode())
         if path == "/cohort/analyses/abc":
             server.runs -= 1
             return self.say(json.dumps({"id": "abc", "state": "running" if server.runs else "done", "result": {"p": 0.5}}).encode())
@@ -372,6 +374,20 @@ tractus_cohort(tractus_server("{self.peer.url}", "tractus_good"), "{self.to}", t
         self.assertEqual(self.server.analyse("anova", "correct ~ level")["result"], {"p": 0.5})
         with self.assertRaisesRegex(TractusError, "no column nothing"):
             self.server.analyse("anova", "correct ~ nothing")
+
+    def test_an_analysis_that_another_stopped_says_who(self):
+        self.peer.stopped_by = "fay"
+        with self.assertRaisesRegex(TractusError, "^the analysis was stopped by fay$"):
+            self.server.analyse("anova", "correct ~ level")
+
+    @unittest.skipUnless(has_r("jsonlite", "curl"), "R with jsonlite and curl is not installed")
+    def test_in_r_an_analysis_that_another_stopped_says_who(self):
+        self.peer.stopped_by = "fay"
+        ran = run_r(f'''
+tractus_analyse(tractus_server("{self.peer.url}", "tractus_good"), "anova", "correct ~ level")
+''')
+        self.assertNotEqual(ran.returncode, 0)
+        self.assertIn("Error: the analysis was stopped by fay", ran.stderr)
 
     def test_an_analysis_ends_with_its_waiting(self):
         with unittest.mock.patch("tractus_client.server.time.sleep", side_effect=KeyboardInterrupt):

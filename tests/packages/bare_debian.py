@@ -184,6 +184,9 @@ def is_used(machine, site, password):
         check({f"/usr/share/man/man1/{program}.1.gz", f"/usr/share/bash-completion/completions/{program}",
                f"/usr/share/doc/{package}/sbom.spdx.json", f"/usr/share/doc/{package}/copyright"} <= set(holds),
               f"{package}: manual, completion, list of components and licences")
+    holds = machine.must("dpkg -L tractus-tools").split()
+    check({f"/usr/lib/tractus/{name}" for name in ("tractus_model.so", "tractus_model_formulas.so", "licences.txt")} <= set(holds),
+          "tractus-tools: what `tractus fmu` packs")
     machine.must("systemctl start tractus-backup.service")
     check(machine.must("ls /var/backups/tractus").strip() != "", "the nightly backup runs and is verified")
     trial = machine.must("runuser -u tractus-station -- tractus-station --device sim-rig --scenario soft --seed 1 --speed fast "

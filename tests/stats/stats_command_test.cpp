@@ -136,6 +136,47 @@ TEST_F(Stats, GivesTheReferenceValuesByEveryMethod) {
   expect_near(mixed["model"]["sd_between_groups"], want_mixed["sigma_u"], 1e-8);
 }
 
+/// glmer's fits with nAGQ = 1: expected/logistic_random_terms.json of
+/// logistic_random_terms.R (R 4.2.2, lme4 1.1.31, numDeriv 2016.8.1.1). SIMULATED data.
+TEST_F(Stats, FitsAnswersWithCrossedTermsAsLme4Does) {
+  const auto reference = expected("logistic_random_terms");
+  const auto agrees = [&](const std::string& name, const std::string& formula) {
+    const auto got = json("logistic", name + ".csv", formula);
+    const auto& want = reference["fits"][name];
+    expect_near(got["model"]["log_likelihood"], -0.5 * want["deviance"].get<double>(), 1e-10);
+    expect_near(got["model"]["AIC"], want["aic"], 1e-10);
+    for (const std::size_t j : {0u, 1u}) {
+      const auto& row = got["coefficients"][j];
+      const double estimate = want["fixef"][j], error = want["se"][j];
+      expect_near(row["estimate"], estimate, 1e-6);
+      expect_near(row["standard_error"], error, 1e-6);
+      expect_near(row["odds_ratio"], std::exp(estimate), 1e-6);
+      expect_near(row["odds_ratio95_high"], std::exp(estimate + 1.959964 * error), 1e-6);
+    }
+    for (const auto& row : got["random_effects"]) {
+      const auto& block = want["covariances"][row["group"].get<std::string>()];
+      const std::size_t slope = row["effect"] == "(Intercept)" ? 0 : 1;
+      const std::size_t other = row["effect"] == "trial" ? 1 : 0;
+      expect_near(row["covariance"], block[slope][other], 1e-5);
+    }
+    return got;
+  };
+  const auto single = agrees("sim_logistic_1", "y ~ trial + (1 | surgeon) + (1 | scenario)");
+  ASSERT_EQ(single["random_effects"].size(), 2);
+  int compared = 0;
+  for (const auto& row : single["group_effects"]) {
+    const auto& want = reference["fits"]["sim_logistic_1"];
+    const std::string group = row["group"];
+    if (row["name"] != want["first_levels"][group]) continue;
+    expect_near(row["effect"], want["first_effects"][group], 1e-6);
+    ++compared;
+  }
+  EXPECT_EQ(compared, 2);
+  const auto sloped =
+      agrees("sim_logistic_2", "y/m ~ trial + (1 + trial | surgeon) + (1 | scenario)");
+  EXPECT_EQ(sloped["random_effects"].size(), 4);
+}
+
 TEST_F(Stats, MakesFactorsOfTextAndOfNumbersOnRequest) {
   const auto got = json("lmm", "sim_cohort_trials.csv",
                         "breach_velocity_mm_s ~ factor(repetition) + scenario + experience_years "

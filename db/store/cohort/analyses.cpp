@@ -20,7 +20,7 @@ AnalysisPlan plan_from(const Row& row) {
 }
 
 core::Result<AnalysisRun> run_from(const Row& row) {
-  const auto state = TRY(row.word<WorkState>(4, "analyses.state"));
+  const auto state = TRY(row.word<AnalysisState>(4, "analyses.state"));
   return AnalysisRun{row.text(0),
                      row.text_or_null(1),
                      row.text(2),
@@ -113,12 +113,12 @@ core::Result<void> finish_analysis(Writing& tx, const AnalysisRun& run, std::int
                {or_null(run.result), or_null(run.report), or_null(run.data), now_utc_us, run.id}));
 }
 
-core::Result<void> fail_analysis(Writing& tx, const std::string& id, const std::string& why,
-                                 std::int64_t now_utc_us) {
+core::Result<void> end_analysis(Writing& tx, const std::string& id, AnalysisState state,
+                                const std::string& why, std::int64_t now_utc_us) {
   return done(
-      tx.query("update analyses set state = 'failed', error = ?, changed_utc_us = ? "
+      tx.query("update analyses set state = ?, error = ?, changed_utc_us = ? "
                "where id = ? and state in ('queued', 'running')",
-               {why, now_utc_us, id}));
+               {name_value(state), why, now_utc_us, id}));
 }
 
 }  // namespace store

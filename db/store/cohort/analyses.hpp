@@ -18,17 +18,28 @@ struct AnalysisPlan {
   std::string made_by;
 };
 
+/// `cancelled`: a person stopped it.
+enum class AnalysisState { queued, running, done, failed, cancelled };
+constexpr auto words(AnalysisState) {
+  using enum AnalysisState;
+  return std::to_array<core::Word<AnalysisState>>({{queued, "queued"},
+                                                   {running, "running"},
+                                                   {done, "done"},
+                                                   {failed, "failed"},
+                                                   {cancelled, "cancelled"}});
+}
+
 /// A run of an analysis.
 struct AnalysisRun {
   std::string id;
   std::optional<std::string> plan_id;  ///< none: one method, without a locked plan
   std::string study;
   std::string plan;  ///< object: the plan that is run
-  WorkState state = WorkState::queued;
+  AnalysisState state = AnalysisState::queued;
   double share = 0.0;                                ///< of the work, 0 … 1
   std::optional<std::string> snapshot, description;  ///< objects: the frozen CSV, snapshot.json
   std::optional<std::string> result, report, data;   ///< objects, once done
-  std::string error;
+  std::string error;                                 ///< why it failed, or who stopped it
   std::int64_t made_utc_us = 0;
   std::string made_by;
 };
@@ -55,7 +66,8 @@ core::Result<void> note_analysis_snapshot(Writing& tx, const std::string& id,
 /// `done` as in AnalysisRun: result, report, data. An analysis that was stopped stays so.
 core::Result<void> finish_analysis(Writing& tx, const AnalysisRun& done, std::int64_t now_utc_us);
 /// Of one that is queued or running; any other stays as it is.
-core::Result<void> fail_analysis(Writing& tx, const std::string& id, const std::string& why,
-                                 std::int64_t now_utc_us);
+/// @param state  failed or cancelled
+core::Result<void> end_analysis(Writing& tx, const std::string& id, AnalysisState state,
+                                const std::string& why, std::int64_t now_utc_us);
 
 }  // namespace tractus::store

@@ -30,7 +30,7 @@ constexpr auto words(JobKind) {
                                              {felt, "felt"}});
 }
 
-/// How far the work on an analysis or a case has come.
+/// How far the work on a case has come.
 enum class WorkState { queued, running, done, failed };
 constexpr auto words(WorkState) {
   using enum WorkState;

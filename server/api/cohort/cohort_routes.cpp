@@ -115,8 +115,8 @@ Result<http::Response> analysis(const Call& call) {
 Result<http::Response> stop_analysis(const Call& call) {
   const auto run = TRY(analysis_of(call));
   TRY(call.backend.store.write([&](store::Writing& tx) {
-    return store::fail_analysis(tx, run.id, "stopped by " + call.caller.name,
-                                call.backend.now_utc_us());
+    return store::end_analysis(tx, run.id, store::AnalysisState::cancelled,
+                               "stopped by " + call.caller.name, call.backend.now_utc_us());
   }));
   return json_response(analysis_summary(TRY(analysis_of(call))));
 }
@@ -185,9 +185,9 @@ std::vector<Field> analysis_fields() {
       {"id", text("Id of the analysis")},
       {"plan", nullable(text("Id of the locked plan; null for an analysis without a plan"))},
       {"study", nullable(text("Id of the study; null: all trials"))},
-      {"state", one_of<store::WorkState>("State of the analysis")},
+      {"state", one_of<store::AnalysisState>("State of the analysis")},
       {"share", number("1", "Completed share of the work, 0 to 1")},
-      {"error", text("Reason for the failure; empty if the analysis did not fail")},
+      {"error", text("Reason for the failure, or who stopped the analysis; otherwise empty")},
       {"snapshot", nullable(text("SHA-256 of the frozen data; null until the data are frozen"))},
       {"made_utc_us", integer("us", "Time of the request, in microseconds since 1970-01-01 UTC")},
       {"made_by", text("Name of the account that requested the analysis")}};

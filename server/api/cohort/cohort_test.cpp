@@ -124,8 +124,9 @@ class Cohort : public ApiTest {
     const auto done =
         jobs::analyse(store_, objects_, backend_.pseudonym_key, id, [] { return false; });
     if (!done) {
-      const auto failed = store_.write(
-          [&](store::Writing& tx) { return store::fail_analysis(tx, id, done.error().what, 2); });
+      const auto failed = store_.write([&](store::Writing& tx) {
+        return store::end_analysis(tx, id, store::AnalysisState::failed, done.error().what, 2);
+      });
       EXPECT_TRUE(failed);
     }
     return json(get("analyses/" + id));
@@ -423,10 +424,10 @@ TEST_F(Cohort, StopsAnAnalysisThatWaitsOrRuns) {
   const std::string waiting = queued();
   const auto stopped = stop(waiting);
   EXPECT_EQ(stopped.status, 200) << text(stopped);
-  EXPECT_EQ(json(stopped)["state"], "failed");
+  EXPECT_EQ(json(stopped)["state"], "cancelled");
   EXPECT_THAT(json(stopped).value("error", ""), HasSubstr("stopped by "));
   EXPECT_TRUE(done(waiting, [] { return false; }));
-  EXPECT_EQ(json(get("analyses/" + waiting))["state"], "failed") << "its job does nothing";
+  EXPECT_EQ(json(get("analyses/" + waiting))["state"], "cancelled") << "its job does nothing";
 
   const std::string running = queued();
   const auto ended = done(running, [&] {
@@ -435,7 +436,7 @@ TEST_F(Cohort, StopsAnAnalysisThatWaitsOrRuns) {
   });
   ASSERT_FALSE(ended);
   EXPECT_EQ(ended.error().code, core::Errc::cancelled);
-  EXPECT_EQ(json(get("analyses/" + running))["state"], "failed");
+  EXPECT_EQ(json(get("analyses/" + running))["state"], "cancelled");
 
   const std::string finished = analysed(asked)["id"];
   EXPECT_EQ(stop(finished).status, 200);

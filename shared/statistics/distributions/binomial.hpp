@@ -12,10 +12,10 @@ template <class Derived>
 void parts(const Eigen::ArrayBase<Derived>& eta, typename Derived::PlainObject& pi,
            typename Derived::PlainObject& softplus) {
   using Array = typename Derived::PlainObject;
-  const Array e = (-eta.abs()).exp(), u = 1.0 + e;
+  const Array e = (-eta.abs()).exp(), u = 1.0 + e, log_u = u.log();  // each by itself: vectorised
   pi = (eta > 0.0).select(1.0 / u, e / u);
   // ln(1 + e) after Kahan: the quotient takes back what rounding 1 + e lost.
-  softplus = eta.cwiseMax(0.0) + (u == 1.0).select(e, u.log() * e / (u - 1.0));
+  softplus = eta.cwiseMax(0.0) + (u == 1.0).select(e, log_u * e / (u - 1.0));
 }
 
 /// π alone.

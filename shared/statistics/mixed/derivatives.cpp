@@ -3,10 +3,16 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <cmath>
+#include <limits>
 
 namespace tractus {
 namespace statistics {
 namespace {
+
+constexpr int kMostNewton = 6;
+// Second derivatives by differences of a known gradient are the same within this distance, about
+// standard errors; those by differences of values are taken anew at each step.
+constexpr double kSameCurvature = 1e-5;
 
 /// f at x + Σ aᵢ eᵢ for up to two coordinates.
 double shifted(const ScalarField& f, Vector x, Eigen::Index i, double a, Eigen::Index j = 0,
@@ -43,6 +49,7 @@ struct Smooth {
   const ScalarField& value;
   VectorField gradient;
   std::function<Matrix(const Vector&)> hessian;
+  double same_curvature = 0.0;  // distance within which second derivatives are not taken anew
 };
 
 void quasi_newton(const Smooth& f, int most_steps, Minimum& at) {
@@ -70,30 +77,45 @@ void quasi_newton(const Smooth& f, int most_steps, Minimum& at) {
   }
 }
 
-/// True where the last step was small: the minimum is reached.
+/// Newton's steps, on second derivatives that are taken anew after a long one only: they are most
+/// of the work, and near the minimum hardly change. True where the last step was small: the minimum
+/// is reached.
 bool newton(const Smooth& f, Minimum& at) {
-  for (int k = 0; k < 6; ++k) {
+  double moved = std::numeric_limits<double>::infinity();  // since the second derivatives
+  const auto curvature = [&] {
+    if (moved <= f.same_curvature) return;
+    at.hessian = f.hessian(at.x);
+    moved = 0.0;
+  };
+  const auto reached = [&] {
+    if (f.same_curvature > 0.0) curvature();
+    return true;
+  };
+  for (int k = 0; k < kMostNewton; ++k) {
     const Vector gradient = f.gradient(at.x);
-    const Eigen::LDLT<Matrix> hessian(f.hessian(at.x));
+    curvature();
+    const Eigen::LDLT<Matrix> hessian(at.hessian);
     if (hessian.info() != Eigen::Success || !hessian.isPositive()) return false;
     const Vector move = -hessian.solve(gradient);
     if (!move.allFinite()) return false;
     const double value = f.value(at.x + move);
     if (!(value <= at.value + 10.0 * noise(at.value))) {
       // So near the minimum the slope tells more than the value, which is a sum of many terms.
-      const bool near = move.norm() < 1e-5;
-      if (near) at.x += move;
-      return near;
+      if (!(move.norm() < 1e-5)) return false;
+      at.x += move;
+      moved += move.norm();
+      return reached();
     }
     at.x += move;
     at.value = value;
-    if (move.norm() < 1e-9 * (1.0 + at.x.norm())) return true;
+    moved += move.norm();
+    if (move.norm() < 1e-9 * (1.0 + at.x.norm())) return reached();
   }
-  return true;
+  return reached();
 }
 
 Minimum minimum(const Smooth& f, const Vector& start, int most_steps) {
-  Minimum at{start, f.value(start), false};
+  Minimum at{start, f.value(start), {}, false};
   if (start.size() == 0) return at.converged = true, at;
   quasi_newton(f, most_steps, at);
   at.converged = newton(f, at);
@@ -154,8 +176,9 @@ Minimum minimise(const ScalarField& f, const Vector& start, double step, int mos
 Minimum minimise(const ScalarField& f, const VectorField& gradient, const Vector& start,
                  double step, int most_steps) {
   return minimum(
-      {f, gradient, [&](const Vector& x) { return hessian_of_gradient(gradient, x, step); }}, start,
-      most_steps);
+      {f, gradient, [&](const Vector& x) { return hessian_of_gradient(gradient, x, step); },
+       kSameCurvature},
+      start, most_steps);
 }
 
 }  // namespace statistics

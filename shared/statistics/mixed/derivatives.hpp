@@ -28,6 +28,8 @@ Matrix hessian_of_gradient(const VectorField& gradient, const Vector& x, double 
 struct Minimum {
   Vector x;
   double value = 0.0;
+  /// At x, or within 1e-5 of it, where it converged and the gradient is known.
+  Matrix hessian;
   bool converged = false;
 };
 

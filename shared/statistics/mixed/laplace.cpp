@@ -63,8 +63,8 @@ void LaplaceDeviance::add_slopes(const Vector& rows, const std::vector<Matrix>& 
 
 /// The objective of a mode whose η is known.
 void LaplaceDeviance::complete(Mode& mode) const {
-  Array pi, softplus;
-  binomial::parts(mode.eta, pi, softplus);
+  Array softplus;
+  binomial::parts(mode.eta, mode.pi, softplus);
   mode.objective =
       -2.0 * (counts_.successes.array() * mode.eta - counts_.trials.array() * softplus).sum() +
       squared_norm(mode.u);
@@ -72,22 +72,29 @@ void LaplaceDeviance::complete(Mode& mode) const {
 
 LaplaceDeviance::Mode LaplaceDeviance::mode_of(const Vector& theta, Vector beta,
                                                std::vector<Matrix> u) const {
-  Mode out{std::move(beta), std::move(u), {}};
+  Mode out{std::move(beta), std::move(u), {}, {}};
   out.eta = (x_ * out.beta).array();
   add_effects(theta, out.u, out.eta);
   complete(out);
   return out;
 }
 
+Vector LaplaceDeviance::weights(const Mode& at) const {
+  return counts_.trials.array() * (at.pi * (1.0 - at.pi)).cwiseMax(kLeastVariance);
+}
+
 /// Where one weighted least squares leads, with β or at this β.
 Penalised LaplaceDeviance::weighted_step(const Vector& theta, const Mode& from, bool with_beta) {
-  const Array pi = binomial::inverse_logit(from.eta);
-  const Array weights = counts_.trials.array() * (pi * (1.0 - pi)).cwiseMax(kLeastVariance);
-  Array working = from.eta + (counts_.successes.array() - counts_.trials.array() * pi) / weights;
-  if (!with_beta) working -= (x_ * from.beta).array();
-  squares_.observe(working.matrix(), weights.matrix());
-  return with_beta ? squares_.solve(theta, PenalisedLeastSquares::Want::everything)
-                   : squares_.solve_effects(theta);
+  const Vector w = weights(from);
+  Vector working =
+      from.eta + (counts_.successes.array() - counts_.trials.array() * from.pi) / w.array();
+  squares_.weigh(w);
+  if (with_beta) {
+    squares_.observe(working);
+    return squares_.solve(theta, PenalisedLeastSquares::Want::everything);
+  }
+  working.noalias() -= x_ * from.beta;
+  return squares_.solve_effects(theta, working);
 }
 
 /// To the mode of a concave function. False: it was not reached.
@@ -114,15 +121,18 @@ bool LaplaceDeviance::climb(const Vector& theta, Mode& at, bool with_beta, Penal
 /// The mode of u, from the last one or from 0, whichever is nearer.
 bool LaplaceDeviance::find(const Vector& theta, const Vector& beta) {
   if (!theta.allFinite() || !beta.allFinite()) return false;
+  if (theta_.size() > 0 && theta == theta_ && beta == mode_.beta) return true;
+  theta_.resize(0);
   std::vector<Matrix> zero = mode_.u;
   for (Matrix& part : zero) part.setZero();
   Mode at = mode_of(theta, beta, mode_.u), from_zero = mode_of(theta, beta, std::move(zero));
   if (!(at.objective <= from_zero.objective)) at = std::move(from_zero);
   Penalised last;
-  if (!climb(theta, at, false, last)) return false;
+  if (!climb(theta, at, false, last) || !std::isfinite(at.objective)) return false;
   mode_ = std::move(at);
+  theta_ = theta;
   log_det_ = last.log_det_L;
-  return std::isfinite(mode_.objective);
+  return true;
 }
 
 std::optional<LaplaceDeviance::Start> LaplaceDeviance::joint_mode(const Vector& theta) {
@@ -130,6 +140,7 @@ std::optional<LaplaceDeviance::Start> LaplaceDeviance::joint_mode(const Vector& 
   Penalised last;
   if (!climb(theta, at, true, last)) return {};
   mode_ = std::move(at);
+  theta_.resize(0);
   return Start{mode_.beta, last.covariance};
 }
 
@@ -143,16 +154,14 @@ LaplaceDeviance::Gradient LaplaceDeviance::gradient(const Vector& theta, const V
                Vector::Constant(beta.size(), std::numeric_limits<double>::quiet_NaN())};
   if (!find(theta, beta)) return out;
   const LogDeterminantSlope slope = squares_.log_determinant_slope(theta);
-  const Array pi = binomial::inverse_logit(mode_.eta);
-  const Array weights = counts_.trials.array() * (pi * (1.0 - pi)).cwiseMax(kLeastVariance);
-  const Array residual = counts_.successes.array() - counts_.trials.array() * pi;
+  const Array w = weights(mode_);
+  const Array residual = counts_.successes.array() - counts_.trials.array() * mode_.pi;
   // g/W is a response whose effects are q: dW/dη = W (1 − 2π).
-  const Array g_by_w = slope.of_weights.array() * (1.0 - 2.0 * pi);
-  squares_.observe(g_by_w.matrix(), weights.matrix());
-  const std::vector<Matrix> q = squares_.solve_effects(theta).u;
-  Array of_q = Array::Zero(pi.size());
+  const Array g_by_w = slope.of_weights.array() * (1.0 - 2.0 * mode_.pi);
+  const std::vector<Matrix> q = squares_.solve_effects_again(theta, g_by_w).u;
+  Array of_q = Array::Zero(w.size());
   add_effects(theta, q, of_q);
-  const Vector rho = (weights * (g_by_w - of_q) - 2.0 * residual).matrix();
+  const Vector rho = w * (g_by_w - of_q) - 2.0 * residual;
   out.beta = x_.transpose() * rho;
   out.theta = slope.of_theta;
   add_slopes(rho, mode_.u, out.theta);

@@ -49,12 +49,13 @@ class LaplaceDeviance {
   struct Mode {
     Vector beta;
     std::vector<Matrix> u;
-    Array eta;
+    Array eta, pi;
     double objective = 0.0;  // −2 ln p(y | u, β) without binomial coefficients, + |u|²
   };
 
   Mode mode_of(const Vector& theta, Vector beta, std::vector<Matrix> u) const;
   void complete(Mode& mode) const;
+  Vector weights(const Mode& at) const;
   Penalised weighted_step(const Vector& theta, const Mode& from, bool with_beta);
   bool climb(const Vector& theta, Mode& at, bool with_beta, Penalised& last);
   bool find(const Vector& theta, const Vector& beta);
@@ -66,6 +67,7 @@ class LaplaceDeviance {
   PenalisedLeastSquares squares_;
   double binomial_ = 0.0;  // −2 ln of the binomial coefficients
   Mode mode_;              // where the last search ended
+  Vector theta_;           // of that search; empty: it found no mode of u alone
   double log_det_ = 0.0;   // ln|L|² there
 };
 

@@ -127,8 +127,8 @@ core::Result<LogisticMixedModel> logistic_mixed_model(const Design& design, cons
     return go_on(x) ? problem.gradient(x) : Vector::Zero(x.size());
   };
   const Minimum at = least(problem, value, gradient);
-  const Matrix covariance =
-      problem.covariance(hessian_of_gradient(gradient, at.x, kDifferenceStep));
+  const Matrix covariance = problem.covariance(
+      at.converged ? at.hessian : hessian_of_gradient(gradient, at.x, kDifferenceStep));
   if (stopped) return core::Error{core::Errc::cancelled, "stopped"};
   const Vector theta = problem.theta(at.x), beta = problem.beta(at.x);
   ran_away = ran_away || (!at.converged && theta.cwiseAbs().maxCoeff() > kMostUnsettled);

@@ -106,95 +106,144 @@ PenalisedLeastSquares::PenalisedLeastSquares(const Matrix& x,
   }
   dense_ = q2_ <= kMostDense;
   find_pattern();
+  find_pairs();
+  weigh(Vector::Ones(rows()));
 }
 
-/// Which columns of Z₂ each level of Z₁ meets, and where each row adds to.
+/// The rows of Z, which columns of Z₂ each level of Z₁ meets, and where each row adds to.
 void PenalisedLeastSquares::find_pattern() {
   const auto& group_of = terms_[main_].level_of;
   rows_of_.resize(std::size_t(groups_));
   for (std::size_t i = 0; i < group_of.size(); ++i)
     rows_of_[std::size_t(group_of[i])].push_back(int(i));
-  slot_.assign(terms_.size(), {});
-  for (std::size_t t = 0; t < terms_.size(); ++t)
-    if (!eliminated_[t]) slot_[t].resize(group_of.size());
-  begin_ = {0};
-  for (const auto& of_group : rows_of_) {
+  Eigen::Index entries = 0;
+  for (const auto& term : terms_) entries += term.effects();
+  z_.resize(entries, rows());
+  slot_.resize(entries - k_, rows());
+  begin_.assign(std::size_t(groups_) + 1, 0);
+  Eigen::Index behind = k_;
+  for (std::size_t t = 0; t < terms_.size(); ++t) {
+    const ScaledTerm& term = terms_[t];
+    const Eigen::Index at = eliminated_[t] ? first_[t] : behind;
+    z_.middleRows(at, term.effects()) =
+        (term.from->columns.array().rowwise() / term.scale.transpose().array()).transpose();
+    if (eliminated_[t]) continue;
+    term_of_.insert(term_of_.end(), std::size_t(term.size()), int(t));
+    behind += term.effects();
+  }
+  for (std::size_t g = 0; g < rows_of_.size(); ++g) {
+    behind = 0;
     for (std::size_t t = 0; t < terms_.size(); ++t) {
       if (eliminated_[t]) continue;
       const auto& level_of = terms_[t].level_of;
       std::vector<int> met;
-      for (const int i : of_group) met.push_back(level_of[std::size_t(i)]);
+      for (const int i : rows_of_[g]) met.push_back(level_of[std::size_t(i)]);
       std::ranges::sort(met);
       met.erase(std::unique(met.begin(), met.end()), met.end());
-      const auto effects = std::size_t(terms_[t].effects()), from = column_.size();
-      for (const int i : of_group)
-        slot_[t][std::size_t(i)] =
-            from + effects * std::size_t(std::ranges::lower_bound(met, level_of[std::size_t(i)]) -
-                                         met.begin());
+      const int effects = int(terms_[t].effects()), from = int(column_.size());
+      for (const int i : rows_of_[g])
+        for (int e = 0; e < effects; ++e)
+          slot_(behind + e, i) =
+              from + e +
+              effects * int(std::ranges::lower_bound(met, level_of[std::size_t(i)]) - met.begin());
       for (const int level : met)
-        for (std::size_t e = 0; e < effects; ++e)
-          column_.push_back(int(first_[t]) + level * int(effects) + int(e));
+        for (int e = 0; e < effects; ++e) column_.push_back(int(first_[t]) + level * effects + e);
+      behind += effects;
     }
-    begin_.push_back(column_.size());
+    begin_[g + 1] = column_.size();
   }
 }
 
-void PenalisedLeastSquares::observe(const Vector& y, const Vector& weights) {
-  const auto p = x_.cols();
-  cross_.assign(column_.size() * std::size_t(k_), 0.0);
-  own_.assign(std::size_t(groups_), Matrix::Zero(k_, k_));
-  with_xy_.assign(std::size_t(groups_), Matrix::Zero(k_, p + 1));
-  zz_ = Matrix::Zero(dense_ ? q2_ : 0, dense_ ? q2_ : 0);
-  ze_ = Matrix::Zero(q2_, p + 1);
-  weights_ = weights.size() == 0 ? Vector::Ones(y.size()) : weights;
-  Matrix xy(y.size(), p + 1);
-  xy << x_, y;
-  ee_ = xy.transpose() * weights_.asDiagonal() * xy;
-  sum_rows(xy, weights_);
-}
-
-/// Adds each row to the cross products with Z.
-void PenalisedLeastSquares::sum_rows(const Matrix& xy, const Vector& weights) {
-  Vector one(k_);
-  std::vector<std::pair<Eigen::Index, double>> rest;  // entries of the row in Z₂
+/// Where S has entries, in its lower half: two columns of Z₂ that a level of Z₁ both meets.
+void PenalisedLeastSquares::find_pairs() {
+  meetings_.resize(std::size_t(q2_));
+  for (std::size_t g = 0; g < rows_of_.size(); ++g)
+    for (std::size_t c = begin_[g]; c < begin_[g + 1]; ++c)
+      meetings_[std::size_t(column_[c])].push_back({g, c});
   std::vector<Eigen::Triplet<double>> entries;
-  for (Eigen::Index i = 0; i < xy.rows(); ++i) {
-    const auto row = std::size_t(i);
-    const auto group = std::size_t(terms_[main_].level_of[row]);
-    rest.clear();
-    for (std::size_t t = 0; t < terms_.size(); ++t)
-      for (Eigen::Index e = 0; e < terms_[t].effects(); ++e) {
-        const double value = terms_[t].from->columns(i, e) / terms_[t].scale[e];
-        if (eliminated_[t])
-          one[first_[t] + e] = value;
-        else
-          rest.emplace_back(first_[t] + terms_[t].level_of[row] * terms_[t].effects() + e, value);
+  std::vector<int> last(std::size_t(q2_), -1);  // the column in which a row was seen last
+  for (int j = 0; j < int(q2_); ++j)
+    for (const auto& [g, c] : meetings_[std::size_t(j)])
+      for (std::size_t r = c; r < begin_[g + 1]; ++r)
+        if (std::exchange(last[std::size_t(column_[r])], j) != j)
+          entries.emplace_back(column_[r], j, 0.0);
+  zz_.resize(q2_, q2_);
+  zz_.setFromTriplets(entries.begin(), entries.end());
+  factor_.s = zz_;
+  const Eigen::Index n = slot_.rows();
+  pair_.resize(n * (n + 1) / 2, rows());
+  for (Eigen::Index i = 0; i < rows(); ++i) {
+    Eigen::Index at = 0;
+    for (Eigen::Index a = 0; a < n; ++a)
+      for (Eigen::Index b = a; b < n; ++b) {
+        const int column = column_[std::size_t(slot_(a, i))];
+        const int* const first = zz_.innerIndexPtr();
+        pair_(at++, i) = int(std::lower_bound(first + zz_.outerIndexPtr()[column],
+                                              first + zz_.outerIndexPtr()[column + 1],
+                                              column_[std::size_t(slot_(b, i))]) -
+                             first);
       }
-    const double w = weights[i];
-    own_[group].noalias() += w * one * one.transpose();
-    with_xy_[group].noalias() += w * one * xy.row(i);
-    std::size_t n = 0;
-    for (std::size_t t = 0; t < terms_.size(); ++t) {
-      if (eliminated_[t]) continue;
-      for (Eigen::Index e = 0; e < terms_[t].effects(); ++e, ++n) {
-        double* const at = &cross_[(slot_[t][row] + std::size_t(e)) * std::size_t(k_)];
-        for (Eigen::Index a = 0; a < k_; ++a) at[a] += w * one[a] * rest[n].second;
-      }
-    }
-    for (const auto& [column, value] : rest) {
-      ze_.row(column) += w * value * xy.row(i);
-      for (const auto& [other, factor] : rest) {
-        if (other < column) continue;
-        if (dense_)
-          zz_(other, column) += w * value * factor;
-        else
-          entries.emplace_back(int(other), int(column), w * value * factor);
-      }
+  }
+}
+
+void PenalisedLeastSquares::weigh(const Vector& weights) {
+  weights_ = weights;
+  sized([&]<int K>() { sum_weights<K>(); });
+}
+
+/// Zᵀ W Z, row by row.
+template <int K>
+void PenalisedLeastSquares::sum_weights() {
+  using Column = Eigen::Matrix<double, K, 1>;
+  cross_.assign(column_.size() * std::size_t(k_), 0.0);
+  own_ = Matrix::Zero(k_, k_ * groups_);
+  zz_.coeffs().setZero();
+  const auto& group_of = terms_[main_].level_of;
+  for (Eigen::Index i = 0; i < rows(); ++i) {
+    const double* const z = &z_(0, i);
+    const double* const z2 = z + k_;
+    const Eigen::Map<const Column> z1(z, k_);
+    const Column weighted = weights_[i] * z1;
+    own_.middleCols(group_of[std::size_t(i)] * k_, k_).noalias() +=
+        weighted.lazyProduct(z1.transpose());
+    Eigen::Index pair = 0;
+    for (Eigen::Index a = 0; a < slot_.rows(); ++a) {
+      Eigen::Map<Column>(&cross_[std::size_t(slot_(a, i) * k_)], k_) += z2[a] * weighted;
+      for (Eigen::Index b = a; b < slot_.rows(); ++b)
+        zz_.valuePtr()[pair_(pair++, i)] += weights_[i] * z2[a] * z2[b];
     }
   }
-  if (dense_) return;
-  sparse_zz_.resize(q2_, q2_);
-  sparse_zz_.setFromTriplets(entries.begin(), entries.end());
+}
+
+void PenalisedLeastSquares::observe(const Vector& y) {
+  Matrix xy(y.size(), x_.cols() + 1);
+  xy << x_, y;
+  right_ = cross_products(xy);
+}
+
+PenalisedLeastSquares::Right PenalisedLeastSquares::cross_products(const Matrix& right) const {
+  Right out;
+  sized([&]<int K>() { sum_right<K>(right, out); });
+  out.ee = right.transpose() * weights_.asDiagonal() * right;
+  return out;
+}
+
+template <int K>
+void PenalisedLeastSquares::sum_right(const Matrix& right, Right& out) const {
+  using Column = Eigen::Matrix<double, K, 1>;
+  const Eigen::Index columns = right.cols();
+  out.with = Matrix::Zero(k_, columns * groups_);
+  out.ze = Matrix::Zero(q2_, columns);
+  const auto& group_of = terms_[main_].level_of;
+  for (Eigen::Index i = 0; i < rows(); ++i) {
+    const Eigen::Map<const Column> z1(&z_(0, i), k_);
+    for (Eigen::Index c = 0; c < columns; ++c) {
+      const double value = weights_[i] * right(i, c);
+      out.with.col(group_of[std::size_t(i)] * columns + c) += value * z1;
+      for (Eigen::Index a = 0; a < slot_.rows(); ++a)
+        out.ze(column_[std::size_t(slot_(a, i))], c) += value * z_(k_ + a, i);
+    }
+  }
 }
 
 Vector PenalisedLeastSquares::start() const {
@@ -226,67 +275,99 @@ Matrix PenalisedLeastSquares::lambda1(const std::vector<Matrix>& lambda) const {
   return out;
 }
 
-PenalisedLeastSquares::Eliminated PenalisedLeastSquares::eliminate(
-    const std::vector<Matrix>& lambda) const {
-  Eliminated out;
+void PenalisedLeastSquares::factorise_levels(const std::vector<Matrix>& lambda) const {
   const Matrix of_level = lambda1(lambda);
-  out.zz = zz_;
-  out.ze = ze_;
-  out.ee = ee_;
-  out.p.reserve(std::size_t(groups_));
-  for (const auto& own : own_) {
-    const Eigen::LLT<Matrix> a(of_level.transpose() * own * of_level + Matrix::Identity(k_, k_));
-    out.log_det += 2.0 * sum_of_logs(a.matrixLLT().diagonal());
+  factor_.log_det = 0.0;
+  factor_.p.resize(k_, k_ * groups_);
+  for (Eigen::Index at = 0; at < k_ * groups_; at += k_) {
+    const Eigen::LLT<Matrix> a(of_level.transpose() * own_.middleCols(at, k_) * of_level +
+                               Matrix::Identity(k_, k_));
+    factor_.log_det += 2.0 * sum_of_logs(a.matrixLLT().diagonal());
     const Matrix half = a.matrixL().solve(of_level.transpose());
-    out.p.push_back(half.transpose() * half);
+    factor_.p.middleCols(at, k_) = half.transpose() * half;
   }
-  if (k_ == 1)
-    subtract<1>(out);
-  else if (k_ == 2)
-    subtract<2>(out);
-  else
-    subtract<Eigen::Dynamic>(out);
+}
+
+/// S = Λ₂ᵀ K_ZZ Λ₂ + I, K_ZZ = Z₂ᵀWZ₂ − Z₂ᵀWZ₁ P Z₁ᵀWZ₂, one level's columns after the other.
+template <int K>
+void PenalisedLeastSquares::fill_levels(const std::vector<Matrix>& lambda) const {
+  using Column = Eigen::Matrix<double, K, 1>;
+  Matrix columns(q2_, 0);
+  const auto row_of = zz_.innerIndexPtr();
+  for (Eigen::Index from = 0; from < q2_;) {
+    const Matrix& here = lambda[std::size_t(term_of_[std::size_t(from)])];
+    const auto k = here.rows();
+    columns.resize(q2_, k);
+    for (Eigen::Index e = 0; e < k; ++e) {
+      double* const into = columns.col(e).data();
+      for (Sparse::InnerIterator at(zz_, from + e); at; ++at) into[at.row()] = at.value();
+      for (const auto& [g, c] : meetings_[std::size_t(from + e)]) {
+        const Column there =
+            factor_.p.middleCols(Eigen::Index(g) * k_, k_)
+                .lazyProduct(Eigen::Map<const Column>(&cross_[c * std::size_t(k_)], k_));
+        for (std::size_t r = c; r < begin_[g + 1]; ++r)
+          into[column_[r]] -= Eigen::Map<const Column>(&cross_[r * std::size_t(k_)], k_).dot(there);
+      }
+      for (Eigen::Index above = 0; above < e; ++above)
+        columns(from + above, e) = columns(from + e, above);
+    }
+    const int end = zz_.outerIndexPtr()[from + 1];
+    for (int at = zz_.outerIndexPtr()[from]; at < end;) {
+      const Matrix& there = lambda[std::size_t(term_of_[std::size_t(row_of[at])])];
+      auto block = columns.middleRows(row_of[at], there.rows());
+      if (k == 1 && there.rows() == 1)
+        block *= there(0, 0) * here(0, 0);
+      else
+        block = (there.transpose() * block * here).eval();
+      at += int(there.rows());
+    }
+    for (Eigen::Index e = 0; e < k; ++e) {
+      columns(from + e, e) += 1.0;
+      for (Sparse::InnerIterator at(factor_.s, from + e); at; ++at)
+        at.valueRef() = columns(at.row(), e);
+    }
+    from += k;
+  }
+}
+
+void PenalisedLeastSquares::factorise(const std::vector<Matrix>& lambda) const {
+  factorise_levels(lambda);
+  if (q2_ == 0) return;
+  sized([&]<int K>() { fill_levels<K>(lambda); });
+  if (dense_) {
+    factor_.dense.compute(Matrix(factor_.s));
+    factor_.log_det += 2.0 * sum_of_logs(factor_.dense.matrixLLT().diagonal());
+    return;
+  }
+  if (!factor_.analysed) factor_.sparse.analyzePattern(factor_.s);
+  factor_.analysed = true;
+  factor_.sparse.factorize(factor_.s);
+  const Sparse& lower = factor_.sparse.matrixL().nestedExpression();
+  factor_.log_det += 2.0 * sum_of_logs(lower.diagonal());
+}
+
+PenalisedLeastSquares::Right PenalisedLeastSquares::eliminated(const Right& of) const {
+  Right out = of;
+  sized([&]<int K>() { out = eliminate<K>(std::move(out)); });
   return out;
 }
 
-/// K = EᵀWE − EᵀWZ₁ P Z₁ᵀWE, the lower half of K_ZZ where it is dense.
+/// K_Ze and K_ee: EᵀWE − EᵀWZ₁ P Z₁ᵀWE.
 template <int K>
-void PenalisedLeastSquares::subtract(Eliminated& out) const {
+PenalisedLeastSquares::Right PenalisedLeastSquares::eliminate(Right of) const {
   using Column = Eigen::Matrix<double, K, 1>;
-  const auto k = std::size_t(k_);
-  for (std::size_t g = 0; g < out.p.size(); ++g) {
-    const Eigen::Matrix<double, K, K> p = out.p[g];
-    const Matrix shrunk = out.p[g] * with_xy_[g];
-    out.ee.noalias() -= with_xy_[g].transpose() * shrunk;
-    for (std::size_t c = begin_[g]; c < begin_[g + 1]; ++c) {
-      const Eigen::Map<const Column> here(&cross_[c * k], k_);
-      out.ze.row(column_[c]).noalias() -= here.transpose() * shrunk;
-      if (!dense_) continue;
-      const Column there = p * here;
-      double* const into = &out.zz(0, column_[c]);
-      for (std::size_t r = c; r < begin_[g + 1]; ++r)
-        into[column_[r]] -= Eigen::Map<const Column>(&cross_[r * k], k_).dot(there);
+  const Eigen::Index columns = of.ee.cols();
+  for (std::size_t g = 0; g < rows_of_.size(); ++g) {
+    const auto with = of.with.middleCols(Eigen::Index(g) * columns, columns);
+    const Eigen::Matrix<double, K, Eigen::Dynamic> shrunk =
+        factor_.p.middleCols(Eigen::Index(g) * k_, k_) * with;
+    of.ee.noalias() -= with.transpose() * shrunk;
+    for (std::size_t r = begin_[g]; r < begin_[g + 1]; ++r) {
+      const Eigen::Map<const Column> here(&cross_[r * std::size_t(k_)], k_);
+      for (Eigen::Index c = 0; c < columns; ++c) of.ze(column_[r], c) -= here.dot(shrunk.col(c));
     }
   }
-}
-
-/// K_ZZ of a large Z₂, both halves.
-PenalisedLeastSquares::Sparse PenalisedLeastSquares::sparse_zz(const Eliminated& at) const {
-  std::vector<Eigen::Triplet<double>> cross, shrunk;
-  for (std::size_t g = 0; g < at.p.size(); ++g)
-    for (std::size_t c = begin_[g]; c < begin_[g + 1]; ++c) {
-      const Eigen::Map<const Vector> here(&cross_[c * std::size_t(k_)], k_);
-      const Vector there = at.p[g] * here;
-      for (Eigen::Index a = 0; a < k_; ++a) {
-        const auto row = int(Eigen::Index(g) * k_ + a);
-        cross.emplace_back(column_[c], row, here[a]);
-        shrunk.emplace_back(row, column_[c], there[a]);
-      }
-    }
-  Sparse left(q2_, groups_ * k_), right(groups_ * k_, q2_);
-  left.setFromTriplets(cross.begin(), cross.end());
-  right.setFromTriplets(shrunk.begin(), shrunk.end());
-  return Sparse(sparse_zz_.selfadjointView<Eigen::Lower>()) - Sparse(left * right);
+  return of;
 }
 
 /// Λ₂ᵀ · rows.
@@ -299,44 +380,6 @@ Matrix PenalisedLeastSquares::turned(const std::vector<Matrix>& lambda, Matrix r
           (lambda[t].transpose() * rows.middleRows(first_[t] + level * k, k)).eval();
   }
   return rows;
-}
-
-PenalisedLeastSquares::Sparse PenalisedLeastSquares::lambda2(
-    const std::vector<Matrix>& lambda) const {
-  std::vector<Eigen::Triplet<double>> entries;
-  for (std::size_t t = 0; t < terms_.size(); ++t) {
-    if (eliminated_[t]) continue;
-    const auto k = terms_[t].effects();
-    for (Eigen::Index at = first_[t]; at < first_[t] + terms_[t].size(); at += k)
-      for (Eigen::Index c = 0; c < k; ++c)
-        for (Eigen::Index r = c; r < k; ++r)
-          entries.emplace_back(int(at + r), int(at + c), lambda[t](r, c));
-  }
-  Sparse out(q2_, q2_);
-  out.setFromTriplets(entries.begin(), entries.end());
-  return out;
-}
-
-/// Factorises S = Λ₂ᵀ K_ZZ Λ₂ + I; returns ln|S|.
-double PenalisedLeastSquares::factorise(const std::vector<Matrix>& lambda,
-                                        const Eliminated& at) const {
-  if (q2_ == 0) return 0.0;
-  if (dense_) {
-    const Matrix whole = at.zz.selfadjointView<Eigen::Lower>();
-    Matrix s = turned(lambda, turned(lambda, whole).transpose());
-    s.diagonal().array() += 1.0;
-    factor_.dense.compute(s);
-    return 2.0 * sum_of_logs(factor_.dense.matrixLLT().diagonal());
-  }
-  const Sparse l = lambda2(lambda);
-  Sparse identity(q2_, q2_);
-  identity.setIdentity();
-  const Sparse s = Sparse(Sparse(l.transpose()) * sparse_zz(at) * l) + identity;
-  if (!factor_.analysed) factor_.sparse.analyzePattern(s);
-  factor_.analysed = true;
-  factor_.sparse.factorize(s);
-  const Sparse& lower = factor_.sparse.matrixL().nestedExpression();
-  return 2.0 * sum_of_logs(lower.diagonal());
 }
 
 Matrix PenalisedLeastSquares::forward(const Matrix& right) const {
@@ -354,9 +397,10 @@ Vector PenalisedLeastSquares::backward(const Vector& right) const {
 Penalised PenalisedLeastSquares::solve(const Vector& theta, Want want) const {
   const auto p = x_.cols();
   const std::vector<Matrix> lambda = triangles(theta);
-  const Eliminated at = eliminate(lambda);
+  factorise(lambda);
+  const Right at = eliminated(right_);
   Penalised out;
-  out.log_det_L = at.log_det + factorise(lambda, at);
+  out.log_det_L = factor_.log_det;
   const Matrix c = forward(turned(lambda, at.ze));  // [R_ZX c_u]
   const Matrix left = at.ee - c.transpose() * c;
   const Eigen::LLT<Matrix> rx(left.topLeftCorner(p, p));
@@ -371,19 +415,23 @@ Penalised PenalisedLeastSquares::solve(const Vector& theta, Want want) const {
   return out;
 }
 
-Penalised PenalisedLeastSquares::solve_effects(const Vector& theta) const {
-  const auto p = x_.cols();
+Penalised PenalisedLeastSquares::solve_effects(const Vector& theta, const Vector& y) const {
+  factorise(triangles(theta));
+  return solve_effects_again(theta, y);
+}
+
+Penalised PenalisedLeastSquares::solve_effects_again(const Vector& theta, const Vector& y) const {
   const std::vector<Matrix> lambda = triangles(theta);
-  const Eliminated at = eliminate(lambda);
+  const Right at = eliminated(cross_products(y));
   Penalised out;
-  out.log_det_L = at.log_det + factorise(lambda, at);
-  const Vector c = forward(turned(lambda, at.ze.col(p)));
-  add_effects(lambda, at, backward(c), Vector::Unit(p + 1, p), out);
+  out.log_det_L = factor_.log_det;
+  const Vector c = forward(turned(lambda, at.ze));
+  add_effects(lambda, at, backward(c), Vector::Ones(1), out);
   return out;
 }
 
 /// u and Λ u of both parts: of Z₂ from u₂, of Z₁ from what Z₂ leaves, level by level.
-void PenalisedLeastSquares::add_effects(const std::vector<Matrix>& lambda, const Eliminated& at,
+void PenalisedLeastSquares::add_effects(const std::vector<Matrix>& lambda, const Right& at,
                                         const Vector& u2, const Vector& residual,
                                         Penalised& out) const {
   Vector b2(q2_);
@@ -400,16 +448,17 @@ void PenalisedLeastSquares::add_effects(const std::vector<Matrix>& lambda, const
       out.u[t].row(level) = u2.segment(from, k).transpose();
     }
   }
-  for (std::size_t g = 0; g < at.p.size(); ++g) {
-    Vector left = with_xy_[g] * residual;
-    for (std::size_t c = begin_[g]; c < begin_[g + 1]; ++c)
+  for (Eigen::Index g = 0; g < groups_; ++g) {
+    Vector left = at.with.middleCols(g * residual.size(), residual.size()) * residual;
+    for (std::size_t c = begin_[std::size_t(g)]; c < begin_[std::size_t(g) + 1]; ++c)
       left -= b2[column_[c]] * Eigen::Map<const Vector>(&cross_[c * std::size_t(k_)], k_);
-    const Vector b1 = at.p[g] * left;
-    const Vector u1 = of_level.transpose() * (left - own_[g] * b1);  // A u = Λᵀ left
+    const Vector b1 = factor_.p.middleCols(g * k_, k_) * left;
+    const Vector u1 =
+        of_level.transpose() * (left - own_.middleCols(g * k_, k_) * b1);  // A u = Λᵀ left
     for (std::size_t t = 0; t < terms_.size(); ++t) {
       if (!eliminated_[t]) continue;
-      out.effects[t].row(Eigen::Index(g)) = b1.segment(first_[t], terms_[t].effects());
-      out.u[t].row(Eigen::Index(g)) = u1.segment(first_[t], terms_[t].effects());
+      out.effects[t].row(g) = b1.segment(first_[t], terms_[t].effects());
+      out.u[t].row(g) = u1.segment(first_[t], terms_[t].effects());
     }
   }
 }

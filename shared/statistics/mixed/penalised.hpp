@@ -12,7 +12,8 @@
 ///
 /// so that 10⁴ surgeons crossed with 10³ scenarios cost one dense 10³ × 10³ Cholesky factorisation.
 /// This is the elimination order that a fill-reducing permutation finds too [Bates2015, section 5.3],
-/// without its indirection. The rows are gone through once: Zᵀ W Z is summed by level.
+/// without its indirection. The rows are gone through once for given weights: Zᵀ W Z is summed by
+/// level. Where its entries are, and those of S, is found once.
 #pragma once
 
 #include <Eigen/Cholesky>
@@ -65,14 +66,18 @@ class PenalisedLeastSquares {
   /// @param x  columns of the fixed effects. `terms` is referred to as long as this lives.
   PenalisedLeastSquares(const Matrix& x, const std::vector<RandomTerm>& terms);
 
-  /// The response and the weight of each observation (empty: 1).
-  void observe(const Vector& y, const Vector& weights = {});
+  /// The weight of each observation; 1 until then.
+  void weigh(const Vector& weights);
+  /// The response of solve(), at the weights as they are.
+  void observe(const Vector& y);
 
   enum class Want { criterion, everything };
   Penalised solve(const Vector& theta, Want want) const;
-  /// Without X, the response being Z Λ u and noise: ln|L|², u and Λ u alone.
-  Penalised solve_effects(const Vector& theta) const;
-  /// Of the weights observed last; `theta` is that of the last solve_effects().
+  /// Without X, the response `y` being Z Λ u and noise: ln|L|², u and Λ u alone.
+  Penalised solve_effects(const Vector& theta, const Vector& y) const;
+  /// The same of another response, at the weights and `theta` of the last solve_effects().
+  Penalised solve_effects_again(const Vector& theta, const Vector& y) const;
+  /// At the weights and `theta` of the last solve_effects().
   LogDeterminantSlope log_determinant_slope(const Vector& theta) const;
 
   /// θ of Λ = I.
@@ -84,44 +89,69 @@ class PenalisedLeastSquares {
  private:
   using Sparse = Eigen::SparseMatrix<double>;
 
-  /// S = L Lᵀ: dense, or sparse where it is large.
+  /// L at one θ: the levels of Z₁, and S = L₂ L₂ᵀ, dense or sparse where it is large.
   struct Factor {
+    Matrix p;  // Λ₁ A⁻¹ Λ₁ᵀ of all levels, side by side
+    Sparse s;  // lower half
     Eigen::LLT<Matrix> dense;
     Eigen::SimplicialLLT<Sparse, Eigen::Lower, Eigen::AMDOrdering<int>> sparse;
     bool analysed = false;  // the sparse pattern is that of every θ
-  };
-  /// The first grouping at one Λ₁.
-  struct Eliminated {
     double log_det = 0.0;
-    std::vector<Matrix> p;  // Λ₁ A⁻¹ Λ₁ᵀ per level
-    Matrix zz;              // K_ZZ where it is dense
-    Matrix ze, ee;          // K_Ze, K_ee
   };
+  /// Cross products of right-hand sides, [X y] or y alone.
+  struct Right {
+    Matrix with;    // Z₁ᵀ W of all levels, side by side
+    Matrix ze, ee;  // of Z₂ and of the right-hand sides, or K of these
+  };
+  /// Column of Z₂ met by a level of Z₁.
+  struct Meeting {
+    std::size_t group, place;  // in column_
+  };
+
+  /// Does `work` with k, the effects of a level of Z₁, known to the compiler.
+  template <class Work>
+  void sized(const Work& work) const {
+    if (k_ == 1)
+      work.template operator()<1>();
+    else if (k_ == 2)
+      work.template operator()<2>();
+    else
+      work.template operator()<Eigen::Dynamic>();
+  }
 
   void find_pattern();
-  void sum_rows(const Matrix& xy, const Vector& weights);
+  void find_pairs();
+  template <int K>
+  void sum_weights();
+  template <int K>
+  void sum_right(const Matrix& right, Right& out) const;
+  Right cross_products(const Matrix& right) const;
   std::vector<Matrix> triangles(const Vector& theta) const;
   Matrix lambda1(const std::vector<Matrix>& lambda) const;
-  Eliminated eliminate(const std::vector<Matrix>& lambda) const;
   template <int K>
-  void subtract(Eliminated& out) const;
-  Sparse sparse_zz(const Eliminated& at) const;
+  Right eliminate(Right of) const;
+  Right eliminated(const Right& of) const;
+  template <int K>
+  void fill_levels(const std::vector<Matrix>& lambda) const;
+  void factorise_levels(const std::vector<Matrix>& lambda) const;
+  void factorise(const std::vector<Matrix>& lambda) const;
   Matrix turned(const std::vector<Matrix>& lambda, Matrix rows) const;
-  Sparse lambda2(const std::vector<Matrix>& lambda) const;
-  double factorise(const std::vector<Matrix>& lambda, const Eliminated& at) const;
-  Matrix forward(const Matrix& right) const;   // L⁻¹
-  Vector backward(const Vector& right) const;  // L⁻ᵀ
-  void add_effects(const std::vector<Matrix>& lambda, const Eliminated& at, const Vector& u2,
+  Matrix forward(const Matrix& right) const;   // L₂⁻¹
+  Vector backward(const Vector& right) const;  // L₂⁻ᵀ
+  void add_effects(const std::vector<Matrix>& lambda, const Right& at, const Vector& u2,
                    const Vector& residual, Penalised& out) const;
+  template <int K>
   struct OfGroup;
-  template <class Inverse>
-  OfGroup of_group(std::size_t group, const Matrix& lambda1, const Inverse& n,
-                   const Inverse& q) const;
-  template <class Inverse>
+  template <int K, class Inverse>
+  OfGroup<K> of_group(std::size_t group, const std::vector<Matrix>& lambda,
+                      const Inverse& s_inverse) const;
+  template <int K, class Inverse>
   LogDeterminantSlope slope(const std::vector<Matrix>& lambda, const Inverse& s_inverse) const;
+  template <class Inverse>
+  LogDeterminantSlope any_slope(const std::vector<Matrix>& lambda, const Inverse& s_inverse) const;
 
-  Matrix x_;        // scaled
-  Vector weights_;  // observed last
+  Matrix x_;  // scaled
+  Vector weights_;
   std::vector<ScaledTerm> terms_;
   Vector column_scale_;
   std::size_t main_ = 0;             // the term whose levels are eliminated
@@ -129,15 +159,19 @@ class PenalisedLeastSquares {
   std::vector<Eigen::Index> first_;  // per term: its first column in Z₂, or within a level of Z₁
   Eigen::Index k_ = 0, q2_ = 0, groups_ = 0;
   bool dense_ = true;
+  Matrix z_;                  // [entry][row]: its k values in Z₁, then those in Z₂
+  std::vector<int> term_of_;  // per column of Z₂
   // Z₁ᵀ W Z₂ by level of Z₁: columns of Z₂ ascending, k values each.
   std::vector<std::size_t> begin_;
   std::vector<int> column_;
   std::vector<double> cross_;
+  std::vector<std::vector<Meeting>> meetings_;  // per column of Z₂
   std::vector<std::vector<int>> rows_of_;       // per level of Z₁
-  std::vector<std::vector<std::size_t>> slot_;  // [term of Z₂][row]: its first place in column_
-  std::vector<Matrix> own_, with_xy_;           // Z₁ᵀ W Z₁ and Z₁ᵀ W [X y] of each level
-  Matrix zz_, ze_, ee_;                         // of Z₂ and [X y]
-  Sparse sparse_zz_;                            // instead of zz_
+  Eigen::MatrixXi slot_;                        // [entry in Z₂][row]: its place in column_
+  Eigen::MatrixXi pair_;  // [pair of entries in Z₂][row]: its place among the values of zz_
+  Matrix own_;            // Z₁ᵀ W Z₁ of all levels, side by side
+  Sparse zz_;             // Z₂ᵀ W Z₂ on the pattern of S, lower half
+  Right right_;           // of [X y]
   mutable Factor factor_;
 };
 

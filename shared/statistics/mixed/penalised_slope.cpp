@@ -3,9 +3,9 @@
 ///     d ln|A| = Σ_i h_i dw_i + 2 Σ_i w_i v_iᵀ dΛᵀ z_i,   v_i = A⁻¹ Λᵀ z_i,   h_i = z_iᵀ Λ v_i
 ///
 /// Only the entries of v_i at row i's own levels are needed. With Z₁ eliminated (penalised.hpp),
-/// A₁ = Λ₁ᵀ Z₁ᵀ W Z₁ Λ₁ + I, F = A₁⁻¹ Λ₁ᵀ Z₁ᵀ W Z₂, N = S⁻¹ Λ₂ᵀ and Q = Λ₂ N:
+/// a = Λᵀ z in its two parts, A₁ = Λ₁ᵀ Z₁ᵀ W Z₁ Λ₁ + I and F = A₁⁻¹ Λ₁ᵀ Z₁ᵀ W Z₂ Λ₂:
 ///
-///     v₁ = A₁⁻¹ Λ₁ᵀ z₁ + F Q Fᵀ Λ₁ᵀ z₁ − F Q z₂,   v₂ = N z₂ − N Fᵀ Λ₁ᵀ z₁
+///     v₁ = A₁⁻¹ a₁ + F S⁻¹ Fᵀ a₁ − F S⁻¹ a₂,   v₂ = S⁻¹ a₂ − S⁻¹ Fᵀ a₁
 ///
 /// where F has entries at the levels alone that a level of Z₁ meets. There S⁻¹ has to be known: a
 /// pattern within that of L, on which a sparse S is inverted [Takahashi1973].
@@ -48,84 +48,81 @@ Sparse inverse_on_pattern(const Sparse& lower) {
 }  // namespace
 
 /// What the rows of one level of Z₁ share, columns [level that it meets].
+template <int K>
 struct PenalisedLeastSquares::OfGroup {
-  Matrix r;          // A₁⁻¹ Λ₁ᵀ
-  Matrix f, fq, fn;  // F, F Q, F Nᵀ
+  Eigen::Matrix<double, K, K> v;                // A₁⁻¹ + F S⁻¹ Fᵀ
+  Eigen::Matrix<double, K, Eigen::Dynamic> fs;  // F S⁻¹
 };
 
-template <class Inverse>
-PenalisedLeastSquares::OfGroup PenalisedLeastSquares::of_group(std::size_t group,
-                                                               const Matrix& lambda1,
-                                                               const Inverse& n,
-                                                               const Inverse& q) const {
-  const Eigen::LLT<Matrix> a(lambda1.transpose() * own_[group] * lambda1 +
+template <int K, class Inverse>
+PenalisedLeastSquares::OfGroup<K> PenalisedLeastSquares::of_group(std::size_t group,
+                                                                  const std::vector<Matrix>& lambda,
+                                                                  const Inverse& s_inverse) const {
+  const Matrix of_level = lambda1(lambda);
+  const Eigen::LLT<Matrix> a(of_level.transpose() * own_.middleCols(Eigen::Index(group) * k_, k_) *
+                                 of_level +
                              Matrix::Identity(k_, k_));
   const std::size_t from = begin_[group];
   const auto met = Eigen::Index(begin_[group + 1] - from);
-  OfGroup out;
-  out.r = a.solve(lambda1.transpose());
-  out.f = out.r * Eigen::Map<const Matrix>(cross_.data() + from * std::size_t(k_), k_, met);
-  Matrix n_met(met, met), q_met(met, met);
+  const Matrix r = a.solve(of_level.transpose());
+  OfGroup<K> out;
+  Eigen::Matrix<double, K, Eigen::Dynamic> f =
+      r * Eigen::Map<const Matrix>(cross_.data() + from * std::size_t(k_), k_, met);
+  for (Eigen::Index c = 0; c < met;) {
+    const Matrix& of = lambda[std::size_t(term_of_[std::size_t(column_[from + std::size_t(c)])])];
+    f.middleCols(c, of.cols()) = (f.middleCols(c, of.cols()) * of).eval();
+    c += of.cols();
+  }
+  out.fs.setZero(k_, met);
   for (Eigen::Index c = 0; c < met; ++c)
-    for (Eigen::Index r = 0; r < met; ++r) {
-      n_met(r, c) = n.coeff(column_[from + std::size_t(r)], column_[from + std::size_t(c)]);
-      q_met(r, c) = q.coeff(column_[from + std::size_t(r)], column_[from + std::size_t(c)]);
-    }
-  out.fq = out.f * q_met;
-  out.fn = out.f * n_met.transpose();
+    for (Eigen::Index at = 0; at < met; ++at)
+      out.fs.col(c) += f.col(at) * s_inverse.coeff(column_[from + std::size_t(at)],
+                                                   column_[from + std::size_t(c)]);
+  out.v = a.solve(Matrix::Identity(k_, k_)) + out.fs * f.transpose();
   return out;
 }
 
-template <class Inverse>
+template <int K, class Inverse>
 LogDeterminantSlope PenalisedLeastSquares::slope(const std::vector<Matrix>& lambda,
                                                  const Inverse& s_inverse) const {
-  const Sparse l2 = lambda2(lambda);
-  const Inverse n = s_inverse * Sparse(l2.transpose()), q = l2 * n;
-  const Matrix of_level = lambda1(lambda);
+  using Column = Eigen::Matrix<double, K, 1>;
+  const Eigen::Matrix<double, K, K> of_level = lambda1(lambda).transpose();
   std::vector<Matrix> sums;  // Σ w z vᵀ per term
   for (const auto& term : terms_) sums.push_back(Matrix::Zero(term.effects(), term.effects()));
   LogDeterminantSlope out;
   out.of_weights.resize(rows());
-  Vector z1(k_), v1(k_);
-  std::vector<std::pair<Eigen::Index, double>> rest;  // z₂: place among the levels met, value
+  Vector a2(slot_.rows()), v(z_.rows());  // v: v₁, then v₂
   for (std::size_t g = 0; g < rows_of_.size(); ++g) {
-    const OfGroup shared = of_group(g, of_level, n, q);
-    const Matrix fqf = shared.fq * shared.f.transpose();
+    const auto shared = of_group<K>(g, lambda, s_inverse);
     for (const int i : rows_of_[g]) {
-      rest.clear();
-      for (std::size_t t = 0; t < terms_.size(); ++t)
-        for (Eigen::Index e = 0; e < terms_[t].effects(); ++e) {
-          const double value = terms_[t].from->columns(i, e) / terms_[t].scale[e];
-          if (eliminated_[t])
-            z1[first_[t] + e] = value;
-          else
-            rest.emplace_back(Eigen::Index(slot_[t][std::size_t(i)] - begin_[g]) + e, value);
-        }
-      const Vector a1 = of_level.transpose() * z1;
-      v1 = shared.r * z1 + fqf * a1;
-      for (const auto& [place, value] : rest) v1 -= value * shared.fq.col(place);
-      double h = a1.dot(v1);
-      std::size_t at = 0;
+      const Column a1 = of_level * z_.col(i).head(k_);
+      Column v1 = shared.v * a1;
+      for (Eigen::Index n = 0; n < a2.size();) {
+        const Matrix& of =
+            lambda[std::size_t(term_of_[std::size_t(column_[std::size_t(slot_(n, i))])])];
+        for (Eigen::Index c = 0; c < of.cols(); ++c)
+          a2[n + c] = of.col(c).dot(z_.col(i).segment(k_ + n, of.rows()));
+        n += of.cols();
+      }
+      for (Eigen::Index n = 0; n < a2.size(); ++n) {
+        const auto place = std::size_t(slot_(n, i));
+        const auto fs = shared.fs.col(Eigen::Index(place - begin_[g]));
+        v1 -= a2[n] * fs;
+        double v2 = -fs.dot(a1);
+        for (Eigen::Index m = 0; m < a2.size(); ++m)
+          v2 += a2[m] * s_inverse.coeff(column_[place], column_[std::size_t(slot_(m, i))]);
+        v[k_ + n] = v2;
+      }
+      v.head(k_) = v1;
+      out.of_weights[i] = a1.dot(v1) + a2.dot(v.tail(a2.size()));
+      Eigen::Index behind = k_;
       for (std::size_t t = 0; t < terms_.size(); ++t) {
         const auto k = terms_[t].effects();
-        Vector z(k), v(k);
-        for (Eigen::Index e = 0; e < k; ++e) {
-          if (eliminated_[t]) {
-            z[e] = z1[first_[t] + e];
-            v[e] = v1[first_[t] + e];
-            continue;
-          }
-          const auto [place, own] = rest[at++];
-          z[e] = own;
-          v[e] = -shared.fn.col(place).dot(a1);
-          for (const auto& [other, value] : rest)
-            v[e] += value * n.coeff(column_[begin_[g] + std::size_t(place)],
-                                    column_[begin_[g] + std::size_t(other)]);
-        }
-        if (!eliminated_[t]) h += (lambda[t].transpose() * z).dot(v);
-        sums[t].noalias() += weights_[i] * z * v.transpose();
+        const auto at = eliminated_[t] ? first_[t] : std::exchange(behind, behind + k);
+        for (Eigen::Index c = 0; c < k; ++c)
+          for (Eigen::Index r = 0; r < k; ++r)
+            sums[t](r, c) += weights_[i] * z_(at + r, i) * v[at + c];
       }
-      out.of_weights[i] = h;
     }
   }
   Eigen::Index place = 0;
@@ -136,14 +133,25 @@ LogDeterminantSlope PenalisedLeastSquares::slope(const std::vector<Matrix>& lamb
   return out;
 }
 
+template <class Inverse>
+LogDeterminantSlope PenalisedLeastSquares::any_slope(const std::vector<Matrix>& lambda,
+                                                     const Inverse& s_inverse) const {
+  LogDeterminantSlope out;
+  sized([&]<int K>() { out = slope<K>(lambda, s_inverse); });
+  return out;
+}
+
 LogDeterminantSlope PenalisedLeastSquares::log_determinant_slope(const Vector& theta) const {
   const std::vector<Matrix> lambda = triangles(theta);
-  if (q2_ == 0) return slope(lambda, Matrix(0, 0));
-  if (dense_) return slope(lambda, Matrix(factor_.dense.solve(Matrix::Identity(q2_, q2_))));
+  if (dense_) {
+    Matrix inverse = Matrix::Identity(q2_, q2_);
+    if (q2_ > 0) factor_.dense.solveInPlace(inverse);
+    return any_slope(lambda, inverse);
+  }
   const Sparse inverse = inverse_on_pattern(factor_.sparse.matrixL().nestedExpression());
   const Sparse whole = inverse.selfadjointView<Eigen::Lower>();
-  return slope(lambda,
-               Sparse(factor_.sparse.permutationPinv() * whole * factor_.sparse.permutationP()));
+  return any_slope(
+      lambda, Sparse(factor_.sparse.permutationPinv() * whole * factor_.sparse.permutationP()));
 }
 
 }  // namespace statistics

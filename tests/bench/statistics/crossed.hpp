@@ -11,7 +11,8 @@ namespace tractus::bench {
 /// `folder` for R.
 void crossed(Report& report, const std::filesystem::path& folder, bool small);
 
-/// The same of yes-or-no answers, first of a tenth of each, which alone lme4 does too.
+/// The same of yes-or-no answers, first of a tenth of each; of the whole lme4 does its rougher
+/// approximation alone.
 void crossed_answers(Report& report, const std::filesystem::path& folder, bool small);
 
 }  // namespace tractus::bench

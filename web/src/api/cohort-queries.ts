@@ -25,7 +25,7 @@ const runFields = {
   id: v.string(),
   plan: v.nullable(v.string()),
   study: v.nullable(v.string()),
-  state: v.picklist(['queued', 'running', 'done', 'failed']),
+  state: v.picklist(['queued', 'running', 'done', 'failed', 'cancelled']),
   share: v.pipe(finite, v.transform(share)),
   error: v.string(),
   snapshot: v.nullable(v.string()),

@@ -24,7 +24,7 @@ describe.runIf(inject('fixture'))('an analysis that runs', () => {
     await page.goto(`/analysis/runs/${id}`);
     expect(await page.getByRole('progressbar', { name: 'Progress' }).getAttribute('value')).toBe('0.3');
     await page.getByRole('button', { name: 'Cancel' }).click();
-    await page.getByText('The analysis failed.').waitFor();
+    await page.getByText('The analysis was stopped.').waitFor();
     await page.getByText(/^stopped by /).waitFor();
     expect(await page.getByRole('button', { name: 'Cancel' }).count()).toBe(0);
   });

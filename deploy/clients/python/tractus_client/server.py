@@ -183,6 +183,8 @@ class Server:
         except KeyboardInterrupt:
             self.stop_analysis(run["id"])
             raise
+        if run["state"] == "cancelled":
+            raise TractusError(f"the analysis was {run['error']}")
         if run["state"] != "done":
             raise TractusError(f"the analysis failed: {run['error']}")
         return self.analysis(run["id"])

@@ -205,6 +205,7 @@ analysed <- function(server, body) {
     if (!run$state %in% c("queued", "running")) break
     Sys.sleep(0.2)
   }, interrupt = function(condition) tractus_stop_analysis(server, id))
+  if (run$state == "cancelled") stop("the analysis was ", run$error, call. = FALSE)
   if (run$state != "done") stop("the analysis failed: ", run$error, call. = FALSE)
   run
 }

@@ -186,11 +186,12 @@ export function NewPlanPage() {
   );
 }
 
-const kState: Record<AnalysisRun['state'], 'neutral' | 'accent' | 'good' | 'bad'> = {
+const kState: Record<AnalysisRun['state'], 'neutral' | 'accent' | 'good' | 'bad' | 'warn'> = {
   queued: 'neutral',
   running: 'accent',
   done: 'good',
   failed: 'bad',
+  cancelled: 'warn',
 };
 
 const kStates: Readonly<Record<AnalysisRun['state'], string>> = {
@@ -198,6 +199,7 @@ const kStates: Readonly<Record<AnalysisRun['state'], string>> = {
   running: marked('running'),
   done: marked('done'),
   failed: marked('failed'),
+  cancelled: marked('cancelled'),
 };
 
 /** A locked plan and its runs. */

@@ -98,6 +98,11 @@ export function RunPage({ id }: { readonly id: string }) {
           {run.error}
         </Notice>
       ) : null}
+      {run.state === 'cancelled' ? (
+        <Notice tone="warn" title={say('The analysis was stopped.')}>
+          {run.error}
+        </Notice>
+      ) : null}
       {run.state === 'queued' || run.state === 'running' ? (
         <>
           <Running id={id} share={run.share} />
