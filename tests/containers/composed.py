@@ -271,6 +271,7 @@ def main():
     if os.geteuid() != 0:
         print("left out: containers with a network of their own need root")
         return SKIPPED
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit("ended by a signal"))  # containers outlive this program otherwise
     folder = Path(tempfile.mkdtemp(prefix="tractus-containers-", dir="/var/tmp"))
     engine = Engine(folder)
     try:
