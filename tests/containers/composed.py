@@ -24,7 +24,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[2]
 for folder in ("attack", "upgrade", "packages"):
     sys.path.insert(0, str(ROOT / "tests" / folder))
-from bare_debian import check, minimal_debian  # noqa: E402
+from bare_debian import check, minimal_debian, remove  # noqa: E402
 from processes import ends_with_us, free_port, wait_until  # noqa: E402
 from record import PIN, Site  # noqa: E402
 from rolling_test import Station  # noqa: E402
@@ -283,7 +283,7 @@ def main():
         keeps_out(at)
     finally:
         engine.end()
-        shutil.rmtree(folder, ignore_errors=True)
+        remove(folder)
     print("composed, killed in parts, complete: as it should be")
     return 0
 

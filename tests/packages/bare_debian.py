@@ -80,6 +80,11 @@ class Machine:
             self.process.kill()
 
 
+def remove(folder):
+    """Without what is still mounted in it: when mmdebstrap or Podman is killed, /dev/shm of this machine may be."""
+    subprocess.run(["rm", "-rf", "--one-file-system", folder], check=False)
+
+
 def minimal_debian(out, packages):
     """A minimal Debian 12 with some packages, as mmdebstrap makes it: a folder, or an archive if `out` ends in .tar."""
     words = ["mmdebstrap", "--variant=minbase", f"--include={packages}", "bookworm", str(out)]
@@ -294,7 +299,7 @@ def main():
     finally:
         if machine:
             machine.stop()
-        shutil.rmtree(folder, ignore_errors=True)
+        remove(folder)
     print("installed, upgraded, removed: as it should be")
 
 
