@@ -9,6 +9,7 @@ set(CMAKE_CXX_STANDARD_REQUIRED ON)
 set(CMAKE_CXX_EXTENSIONS OFF)
 set(CMAKE_RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/bin)
 set(TRACTUS_ARCH x86-64-v3 CACHE STRING "Processor the programs are built for (-march)")
+option(TRACTUS_SYMBOLS "Record functions and lines, which the packages keep apart from the programs" OFF)
 set(TRACTUS_SANITIZE "" CACHE STRING "Sanitizers, comma separated")
 
 find_package(Threads REQUIRED)
@@ -32,6 +33,9 @@ target_compile_options(tractus_options INTERFACE -Wall -Wextra -Wconversion -Wsh
   $<$<CXX_COMPILER_ID:GNU>:-Wno-stringop-overflow$<SEMICOLON>-Wno-restrict>  # gcc 12 at -O3 is wrong about buffers of fmt and std::string
   -march=${TRACTUS_ARCH} -fno-math-errno)
 target_link_libraries(tractus_options INTERFACE Threads::Threads fmt::fmt)
+if(TRACTUS_SYMBOLS)
+  target_compile_options(tractus_options INTERFACE -g1)
+endif()
 find_program(TRACTUS_MOLD mold)
 if(TRACTUS_MOLD)  # links the test programs several times faster than GNU ld
   target_link_options(tractus_options INTERFACE -fuse-ld=mold)
@@ -77,6 +81,9 @@ endif()
 
 # __FILE__ is the same in every checkout, for the compiler cache. After the precompiled header, which would hold the option itself.
 add_compile_options(-fmacro-prefix-map=${CMAKE_SOURCE_DIR}/=)
+if(TRACTUS_SYMBOLS)
+  add_compile_options(-fdebug-prefix-map=${CMAKE_SOURCE_DIR}=/usr/src/tractus)  # where a debugger looks for the sources
+endif()
 
 option(TRACTUS_UNITY "Compile the files of a folder several at a time" ON)
 set(TRACTUS_UNITY_FILES 16 CACHE STRING "How many at a time: three times as many take half of the time, but more is compiled anew after a change")

@@ -85,8 +85,8 @@ void add_effect(const effects::EffectInstance& use, std::size_t k, std::vector<V
       out.push_back({fmt::format("effects.{}.{}", quoted(use.id), param.name) +
                          (one ? "" : fmt::format("[{}]", i + 1)),
                      Causality::parameter, unit == "1" ? "" : unit,
-                     fmt::format("{}: {}", facts->label, param.meaning), *value++, param.low,
-                     param.high,
+                     facts->label + (param.meaning.empty() ? "" : ": " + param.meaning), *value++,
+                     param.low, param.high,
                      fmt::format("/effects/{}/parameters/{}", k, param.name) +
                          (one ? "" : fmt::format("/{}", i))});
     }

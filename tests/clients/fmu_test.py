@@ -382,6 +382,10 @@ class Contents(Exported):
         self.assertEqual(units[variables["a_m_s2"].find("Real").get("unit")], {"m": "1", "s": "-2"})
         self.assertEqual(units["rad/s"], {"s": "-1", "rad": "1"})
 
+    def test_a_number_without_a_meaning_is_described_by_its_effect_alone(self):
+        descriptions = [v.get("description") or "" for v in self.export(FORMULA).description.find("ModelVariables")]
+        self.assertEqual([text for text in descriptions if text == "" or text != text.strip(" :")], [])
+
     def test_the_shared_object_needs_the_c_library_alone_and_shows_fmi_alone(self):
         fmu = self.export(PLAIN)
         path = fmu.folder / "binaries/linux64/tractus_model.so"

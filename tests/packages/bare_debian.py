@@ -80,17 +80,27 @@ class Machine:
             self.process.kill()
 
 
-def bare_root(folder, given):
-    """A minimal Debian 12, made by mmdebstrap or copied from a folder that it made before."""
-    root = folder / "root"
-    if given:
-        subprocess.run(["cp", "-a", given, root], check=True)  # with its device nodes
-        return root
-    words = ["mmdebstrap", "--variant=minbase", "--include=systemd,systemd-sysv,dbus,ca-certificates", "bookworm", str(root)]
+def remove(folder):
+    """Without what is still mounted in it: when mmdebstrap or Podman is killed, /dev/shm of this machine may be."""
+    subprocess.run(["rm", "-rf", "--one-file-system", folder], check=False)
+
+
+def minimal_debian(out, packages):
+    """A minimal Debian 12 with some packages, as mmdebstrap makes it: a folder, or an archive if `out` ends in .tar."""
+    words = ["mmdebstrap", "--variant=minbase", f"--include={packages}", "bookworm", str(out)]
     for part in sorted(Path("/etc/apt/apt.conf.d").glob("*")):  # how this machine reaches a mirror
         if "Acquire::" in part.read_text(errors="replace"):
             words.insert(1, f"--aptopt={part}")
     subprocess.run(words, check=True, capture_output=True)
+
+
+def bare_root(folder, given):
+    """A minimal Debian 12 that boots, made by mmdebstrap or copied from a folder that it made before."""
+    root = folder / "root"
+    if given:
+        subprocess.run(["cp", "-a", given, root], check=True)  # with its device nodes
+    else:
+        minimal_debian(root, "systemd,systemd-sysv,dbus,ca-certificates")
     return root
 
 
@@ -292,7 +302,7 @@ def main():
     finally:
         if machine:
             machine.stop()
-        shutil.rmtree(folder, ignore_errors=True)
+        remove(folder)
     print("installed, upgraded, removed: as it should be")
 
 

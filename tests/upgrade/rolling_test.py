@@ -41,11 +41,11 @@ PIECES = 3
 class Station(threading.Thread):
     """Hands over one trial after another, by the server that it prefers while that answers, else by the other, as behind a proxy."""
 
-    def __init__(self, servers, token, badge, seed):
+    def __init__(self, targets, token, badge, seed):
         super().__init__(daemon=True)
-        self.servers, self.badge, self.seed = servers, badge, seed
-        self.clients = [Client(Target(server.port), {"Authorization": f"Bearer {token}"}) for server in servers]
-        self.acknowledged, self.by, self.refusals, self.wrong = {}, {server.port: 0 for server in servers}, [], []
+        self.badge, self.seed = badge, seed
+        self.clients = [Client(target, {"Authorization": f"Bearer {token}"}) for target in targets]
+        self.acknowledged, self.by, self.refusals, self.wrong = {}, {target.port: 0 for target in targets}, [], []
         self.over = threading.Event()
 
     def ask(self, method, path, body=None, headers=None):
@@ -122,8 +122,8 @@ class Department:
             self.site.clients["fay"].must("POST", "/assignments", {
                 "title": name, "cases": [{"scenario": {"tuned": kind}} for kind in ("hard", "soft", "lateral_breach", "in_out_in")], "repeats": 20,
                 "seed": 1, "release": "at_once", "cohort": cohort})
-            servers = [self.first, self.second] if number == 0 else [self.second, self.first]
-            self.stations.append(Station(servers, self.site.station(f"station-{number}").token, f"B-{number}", 1000 * number))
+            targets = [Target(server.port) for server in (self.first, self.second)][::1 if number == 0 else -1]
+            self.stations.append(Station(targets, self.site.station(f"station-{number}").token, f"B-{number}", 1000 * number))
 
     def sql(self, text):
         return self.postgres.run_sql(text, self.database)

@@ -195,6 +195,8 @@ std::vector<NamedSchema> effect_schemas() {
                {"source", text("Key of the source in the bibliography, or own")},
                {"needs", array(text("Name of a column"),
                                "Columns that a recording must have for this effect")},
+               {"channel", nullable(text("Recorded channel that shows the effect, fz_N or tz_Nm; "
+                                         "null on the palpation rig"))},
                {"contains",
                 array(text("Id of an effect"), "Simpler effects that are limits of this effect")},
                {"free_per_trial", truth("True if the effect is estimated separately for each "

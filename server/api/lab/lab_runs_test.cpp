@@ -221,6 +221,18 @@ TEST_F(LabRoutes, AnEffectOfOnesOwnIsCheckedAsItIsWritten) {
   EXPECT_EQ(json(get("effects?rig=probing"))["adds_to"], "fz_N");
 }
 
+TEST_F(LabRoutes, TheCatalogueSaysWhichChannelShowsAnEffect) {
+  // An effect on the torque is one whose numbers are torques, by their units.
+  for (const core::Json& effect : json(get("effects?rig=probing"))["effects"]) {
+    bool of_torque = false;
+    for (const core::Json& parameter : effect["parameters"])
+      of_torque |= parameter["unit"].get<std::string>().starts_with("N·m");
+    EXPECT_EQ(effect["channel"], of_torque ? "tz_Nm" : "fz_N") << effect["id"];
+  }
+  for (const core::Json& effect : json(get("effects?rig=palpation"))["effects"])
+    EXPECT_TRUE(effect["channel"].is_null()) << effect["id"];
+}
+
 TEST_F(LabRoutes, RefusesWhatIsWrong) {
   EXPECT_EQ(post("models", R"({"format":"tractus-model/1","rig":"loom"})").status, 400);
   EXPECT_EQ(post("models?parent=nobody", kModel).status, 404);

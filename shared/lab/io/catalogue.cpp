@@ -20,6 +20,12 @@ const effects::ExpressionRig& formulas_of(std::string_view rig) {
   return rig == "probing" ? effects::probing_expressions() : effects::palpation_expressions();
 }
 
+/// Where the effect shows; the palpation rig has forces alone.
+Json channel_json(std::string_view rig, effects::Channel channel) {
+  if (rig != "probing") return {};
+  return channel == effects::Channel::torque ? "tz_Nm" : "fz_N";
+}
+
 }  // namespace
 
 Json effect_json(std::string_view rig, const effects::EffectFacts& facts) {
@@ -42,6 +48,7 @@ Json effect_json(std::string_view rig, const effects::EffectFacts& facts) {
           {"equation", facts.equation},
           {"source", facts.source},
           {"needs", facts.needs},
+          {"channel", channel_json(rig, facts.channel)},
           {"contains", facts.parents},
           {"free_per_trial", facts.free_per_trial},
           {"passive", facts.passive},

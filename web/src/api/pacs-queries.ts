@@ -70,6 +70,14 @@ export const pacsSeriesQuery = (study: string) =>
 export const importPacsSeries = (wish: components['schemas']['PacsImportWish']) =>
   requestJson('/pacs/imports', pacsImportSchema, { ...posted, body: wish });
 
+/** The imports that were begun on this visit, the newest first: whoever leaves the page and comes back sees what became of them. */
+export const pacsBegunQuery = queryOptions({
+  queryKey: ['pacs', 'begun'],
+  queryFn: (): readonly { readonly id: string; readonly name: string }[] => [],
+  staleTime: Infinity,
+  gcTime: Infinity,
+});
+
 const isMoving = ({ state }: PacsImport) => state === 'fetching' || state === 'reading';
 export const pacsImportQuery = (id: string) =>
   queryOptions({

@@ -110,6 +110,10 @@ async function fromPacs(page: Page, check: Check): Promise<void> {
   await card.getByText(/The server fetches the series: 90 files, 47\.3.MB/).waitFor();
   await card.getByRole('link', { name: 'Look at the volume' }).waitFor();
   await check('pacs-imported');
+  await card.getByRole('link', { name: 'Look at the volume' }).click();
+  await page.getByRole('region', { name: 'From a PACS' }).waitFor({ state: 'detached' });
+  await page.goBack();
+  await card.getByText('The series is imported and waits for review.').waitFor();
   await card.getByLabel('Patient’s id').fill('nobody');
   await search.click();
   await card.getByText('No study fits.').waitFor();

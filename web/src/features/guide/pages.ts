@@ -117,7 +117,7 @@ export const kPages: readonly GuidePage[] = [
       {
         title: marked('Check what can be felt'),
         text: marked(
-          'The page says for each wall whether a breach can be felt, and where best. With filled bone, the dashed outline in the slices is the outer face of the vertebra that was found: where it is wrong, paint “Bone here” or “No bone here”. Move the entry or the target until every wall can be felt.',
+          'The page says for each wall whether a breach can be felt, and where best. With filled bone, the dashed outline in the slices is the outer face of the vertebra that was found: where it is wrong, paint “Bone here” or “No bone here”; “Remove marks here” takes marks back. Move the entry or the target until every wall can be felt.',
         ),
         to: { href: '/cases', name: marked('Cases') },
       },

@@ -5,6 +5,7 @@ import { Link } from 'wouter';
 import {
   findPacsStudies,
   importPacsSeries,
+  pacsBegunQuery,
   pacsImportQuery,
   pacsQuery,
   pacsSeriesQuery,
@@ -73,7 +74,12 @@ function Importing({ id }: { readonly id: string }) {
 function Import({ study, series }: Chosen) {
   const [name, setName] = useState('');
   const [source, setSource] = useState('');
-  const begun = useMutation({ mutationFn: importPacsSeries });
+  const client = useQueryClient();
+  const begun = useMutation({
+    mutationFn: importPacsSeries,
+    onSuccess: ({ id }, wish) =>
+      client.setQueryData(pacsBegunQuery.queryKey, (others = []) => [{ id, name: wish.name }, ...others]),
+  });
   return (
     <div className={styles.stack}>
       <div className={styles.form}>
@@ -109,9 +115,19 @@ function Import({ study, series }: Chosen) {
           {begun.error.message}
         </Notice>
       ) : null}
-      {begun.data ? <Importing id={begun.data.id} /> : null}
     </div>
   );
+}
+
+/** What was begun on this visit, each with the name of its volume. */
+function Begun() {
+  const begun = useQuery(pacsBegunQuery);
+  return begun.data?.map(({ id, name }) => (
+    <div key={id} className={styles.stack}>
+      <strong>{name}</strong>
+      <Importing id={id} />
+    </div>
+  ));
 }
 
 function SeriesOf({ study }: { readonly study: PacsStudy }) {
@@ -250,6 +266,7 @@ export function FromPacs() {
           </div>
         ) : null}
         {study ? <SeriesOf key={study.uid} study={study} /> : null}
+        <Begun />
       </div>
     </Card>
   );
