@@ -361,8 +361,12 @@ core::Result<Discovery> discover(const Problem& problem, const Diagnosis& diagno
   none.noise_floor = diagnosis.base.noise_floor;
   if (!problem.formula_terms())
     none.remark = "formulas are searched for in recordings of a probe that slides";
-  else if (diagnosis.verdict == Verdict::complete || diagnosis.verdict == Verdict::undecided)
-    none.remark = "nothing is seen to be missing, so that no formula was searched for";
+  else if (diagnosis.verdict == Verdict::complete)
+    none.remark = "nothing is missing, so that no formula was searched for";
+  else if (diagnosis.verdict == Verdict::undecided)
+    none.remark =
+        "these recordings cannot tell whether anything is missing, so that no formula was searched "
+        "for";
   if (!none.remark.empty()) return none;
   return FormulaSearch(problem, diagnosis, options, progress).run();
 }
