@@ -244,15 +244,16 @@ Result<std::unique_ptr<Problem>> make_probing_problem(const models::ProbingModel
       ProbingParameterSpace(model, reach, options.user_effects), std::move(recordings), turns);
   for (const std::string& remark : model.remarks) problem->note(remark);
   if (!shortened.empty()) problem->note(shortened);
-  // Twice: borders and dampings of the file first, then those of a first fit.
+  // Borders and dampings of the file first, then those of a fit, and of one whose samples near borders are left out aright.
   std::vector<double> values;
   for (const Parameter& p : problem->parameters({})) values.push_back(p.start);
   problem->focus(values);
   if (!values.empty()) {
-    const Residual residual(*problem, options.threads);
-    const auto fitted = fit_base(residual).values;
-    problem->estimate_noise(fitted);
-    problem->focus(fitted);
+    for (int fits = 0; fits < 2; ++fits) {
+      const auto fitted = fit_base(Residual(*problem, options.threads)).values;
+      problem->estimate_noise(fitted);
+      problem->focus(fitted);
+    }
     problem->estimate_delay(options.threads);
   }
   return std::unique_ptr<Problem>(std::move(problem));
