@@ -99,9 +99,23 @@ struct Gathered {
           _mm_cvtss_f32(_mm_movehl_ps(t, t))};
 }
 
-/// The window of a point whose neighbours do not all lie in the grid. Three voxels beyond the edge
-/// nothing changes any more, and u is held there.
-[[gnu::noinline]] Window gathered(const ScalarGrid& grid, __m256d u, int reach, Gathered& room) {
+/// Whether neighbours first … first + 2 reach + 1 of an axis, the edge repeated, are all known.
+template <class Grid>
+bool knows(const Grid& field, const int (&cell)[4], int reach) {
+  bool all = true;
+  for (int a = 0; a < 3; ++a) {
+    const int last = field.geometry.dims[std::size_t(a)] - 1;
+    all = all && std::clamp(cell[a] - reach, 0, last) >= field.known_begin[a] &&
+          std::clamp(cell[a] + reach + 1, 0, last) < field.known_end[a];
+  }
+  return all;
+}
+
+/// The window of a point whose neighbours do not all lie in the known part of the grid. Three voxels
+/// beyond the edge nothing changes any more, and u is held there.
+template <class Grid>
+[[gnu::noinline]] Window gathered(const Grid& field, __m256d u, int reach, Gathered& room) {
+  const ScalarGrid& grid = field.blurred;
   const auto& n = grid.dims();
   u = _mm256_max_pd(
       u, _mm256_set1_pd(-4.0));  // and no number becomes −4: `max` then answers its second operand
@@ -109,6 +123,7 @@ struct Gathered {
   const __m256d floor = _mm256_floor_pd(u);
   alignas(16) int cell[4];
   _mm_store_si128(reinterpret_cast<__m128i*>(cell), _mm256_cvttpd_epi32(floor));
+  if (!knows(field, cell, reach)) field.left_part.store(true, std::memory_order_relaxed);
   for (int z = 0; z < 6; ++z)
     for (int y = 0; y < 6; ++y) {
       const float* const row = grid.row(std::clamp(cell[1] - reach + y, 0, n[1] - 1),
@@ -129,7 +144,8 @@ __m256d load(const double* column) { return _mm256_load_pd(column); }
 template <int kReach, class Grid>
 [[gnu::always_inline]] inline Window window(const Grid& field, const Vec3& p, Gathered& room) {
   const ScalarGrid& grid = field.blurred;
-  const __m128i n = _mm_setr_epi32(grid.dims()[0], grid.dims()[1], grid.dims()[2], 1 << 20);
+  const __m128i begin = _mm_load_si128(reinterpret_cast<const __m128i*>(field.known_begin));
+  const __m128i end = _mm_load_si128(reinterpret_cast<const __m128i*>(field.known_end));
   __m256d u = _mm256_fmadd_pd(load(field.index_of[0].v), _mm256_set1_pd(p[0]),
                               load(field.index_at_origin.v));
   u = _mm256_fmadd_pd(load(field.index_of[1].v), _mm256_set1_pd(p[1]), u);
@@ -137,11 +153,10 @@ template <int kReach, class Grid>
   const __m256d floor = _mm256_floor_pd(u);
   const __m128i first =
       _mm_sub_epi32(_mm256_cvttpd_epi32(floor), _mm_set1_epi32(kReach));  // INT_MIN: no int
-  const __m128i most = _mm_sub_epi32(n, _mm_set1_epi32(2 * kReach + 2));
-  const __m128i beyond =
-      _mm_or_si128(_mm_cmpgt_epi32(_mm_setzero_si128(), first), _mm_cmpgt_epi32(first, most));
+  const __m128i most = _mm_sub_epi32(end, _mm_set1_epi32(2 * kReach + 2));
+  const __m128i beyond = _mm_or_si128(_mm_cmpgt_epi32(begin, first), _mm_cmpgt_epi32(first, most));
   if (_mm_movemask_ps(_mm_castsi128_ps(beyond)) & 7) [[unlikely]]
-    return gathered(grid, u, kReach, room);
+    return gathered(field, u, kReach, room);
   Window found = within_cell(_mm256_sub_pd(u, floor));
   found.origin = grid.at(_mm_extract_epi32(first, 0), _mm_extract_epi32(first, 1),
                          _mm_extract_epi32(first, 2));

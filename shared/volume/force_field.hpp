@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <memory>
+#include <vector>
 
 #include "core/progress.hpp"
 #include "core/result.hpp"
@@ -22,6 +23,13 @@ enum class FieldKind {
 struct FieldSample {
   Vec3 g_per_m;          ///< −∇(ω∗α), 1/m, in V
   Mat3 jacobian_per_m2;  ///< ∂g_a/∂p_b, 1/m², in V
+};
+
+/// The blurred opacity of a part of a volume, to be kept in a file and made a field again.
+struct StoredOpacity {
+  Geometry geometry;           ///< of the whole volume
+  Box box;                     ///< the voxels that are stored, not empty
+  std::vector<float> opacity;  ///< ω∗α, [k][j][i] of the box
 };
 
 /// The blurred opacity of a part of a volume, computed beside a field and put into it later. Its
@@ -63,6 +71,11 @@ class ForceField {
   /// Errors: too_large (over 2^31 voxels), cancelled.
   static core::Result<ForceField> make(const Volume& volume, const TransferFunction& transfer,
                                        FieldKind kind, const core::Progress& progress = {});
+  /// A field of which a part alone is known: where a sample reads the part alone, it is that of the
+  /// whole field to the last bit; elsewhere it means nothing, and `left_part` says so. Address space is
+  /// reserved for the whole volume, memory is used for the part's rows. It is never updated.
+  /// Errors: bad_input (a box that is not in the volume, another number of opacities), too_large.
+  static core::Result<ForceField> make(const StoredOpacity& part, FieldKind kind);
   ~ForceField();
   ForceField(ForceField&&) noexcept;
   ForceField& operator=(ForceField&&) noexcept;
@@ -73,6 +86,11 @@ class ForceField {
   FieldSample sample(const Vec3& p_V_m) const noexcept;
   /// (ω∗α)(p), Catmull–Rom between voxels.
   double opacity(const Vec3& p_V_m) const noexcept;
+
+  /// A copy of the opacities of a box within the volume.
+  StoredOpacity stored(const Box& box) const;
+  /// Did a sample since the last call read voxels beyond the part that is known? Never of a whole field.
+  bool left_part() const noexcept;
 
   /// Makes the field that of `volume` again after voxels within `changed` were written. Not beside
   /// samplers.

@@ -26,17 +26,18 @@ std::size_t ScalarGrid::bytes_for(const std::array<int, 3>& dims) noexcept {
   return (slice_floats(dims) * std::size_t(dims[2]) + kLineFloats) * sizeof(float);
 }
 
-std::optional<ScalarGrid> ScalarGrid::make(const std::array<int, 3>& dims) noexcept {
+std::optional<ScalarGrid> ScalarGrid::make(const std::array<int, 3>& dims, Use use) noexcept {
   ScalarGrid grid;
   grid.dims_ = dims;
   grid.row_pitch_ = std::ptrdiff_t(row_floats(dims));
   grid.slice_pitch_ = std::ptrdiff_t(slice_floats(dims));
   grid.bytes_ = bytes_for(dims);
-  void* const memory =
-      mmap(nullptr, grid.bytes_, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+  const int flags = MAP_PRIVATE | MAP_ANONYMOUS | (use == Use::whole ? 0 : MAP_NORESERVE);
+  void* const memory = mmap(nullptr, grid.bytes_, PROT_READ | PROT_WRITE, flags, -1, 0);
   if (memory == MAP_FAILED) return std::nullopt;
-  madvise(memory, grid.bytes_,
-          MADV_HUGEPAGE);  // fewer address misses; a kernel without them is slower, not wrong
+  // Huge pages: fewer address misses; a kernel without them is slower, not wrong. For a part, they would take in
+  // what lies between its rows.
+  madvise(memory, grid.bytes_, use == Use::whole ? MADV_HUGEPAGE : MADV_NOHUGEPAGE);
   grid.data_ = static_cast<float*>(memory);
   return grid;
 }

@@ -13,8 +13,11 @@ namespace tractus::volume {
 /// floats at a time from any voxel and weighed by 0.
 class ScalarGrid {
  public:
+  /// Whether all rows will be written, or a few of them: untouched ones then take no memory.
+  enum class Use { whole, a_part };
   /// Nothing when the memory is not to be had.
-  static std::optional<ScalarGrid> make(const std::array<int, 3>& dims) noexcept;
+  static std::optional<ScalarGrid> make(const std::array<int, 3>& dims,
+                                        Use use = Use::whole) noexcept;
   ~ScalarGrid();
   ScalarGrid(ScalarGrid&& other) noexcept;
   ScalarGrid& operator=(ScalarGrid&&) = delete;
