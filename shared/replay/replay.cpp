@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "core/try.hpp"
-#include "math/spline.hpp"
+#include "models/palpation_stream.hpp"
 
 namespace tractus {
 namespace replay {
@@ -15,113 +15,69 @@ namespace {
 using core::Errc;
 using core::Error;
 
-constexpr double kLongestGap_s = 1.0;
 constexpr double kMostSteps = 1e9;
 constexpr std::size_t kSamplesPerWord = 256;  // between two words to the progress
 
-/// Steps from one recorded time to the next. The small allowance keeps times printed with few
-/// digits from adding one.
-std::uint64_t steps_between(double from_s, double to_s) {
-  return std::uint64_t(std::max(1.0, std::ceil((to_s - from_s) * kRate_Hz - 1e-3)));
-}
-
-core::Result<double> steps_of(const trial::PalpationMeasurement& recording) {
+/// Errors: as of replay.
+core::Result<void> check_times(const trial::PalpationMeasurement& recording) {
   double steps = 1.0;
   for (std::size_t k = 1; k < recording.t_s.size(); ++k) {
     const double from = recording.t_s[k - 1], to = recording.t_s[k];
-    if (to - from > kLongestGap_s)
+    if (to - from > models::kLongestGap_s)
       return Error{
           Errc::bad_input,
           fmt::format("{}: no sample between {} s and {} s; gaps of at most {} s are replayed",
-                      recording.file, from, to, kLongestGap_s)};
-    steps += double(steps_between(from, to));
+                      recording.file, from, to, models::kLongestGap_s)};
+    steps += double(models::palpation_steps(from, to));
   }
   if (steps > kMostSteps)
     return Error{Errc::bad_input,
                  fmt::format("{}: {:.3g} steps of {} Hz, at most {:.0g} are replayed",
-                             recording.file, steps, kRate_Hz, kMostSteps)};
-  return steps;
+                             recording.file, steps, models::kPalpationRate_Hz, kMostSteps)};
+  return {};
 }
-
-/// Holds what runs through a replay from step to step.
-class Run {
- public:
-  explicit Run(const models::PalpationRuntime& runtime) : runtime_(runtime) {}
-
-  laws::PalpationStep step(const effects::HandleMotion& handle) {
-    const auto answer = runtime_.recorded(handle, state_);
-    ++out_.steps;
-    out_.not_converged += !answer.converged;
-    return answer;
-  }
-
-  void keep(const effects::HandleMotion& handle) {
-    const auto answer = step(handle);
-    out_.wrench_H.push_back(answer.wrench_H);
-    out_.deflection_m.push_back(answer.deflection_m);
-    out_.converged.push_back(answer.converged);
-    out_.samples_in_volume +=
-        runtime_.field().geometry().contains(runtime_.tip_m(handle.X_VH, answer.deflection_m));
-  }
-
-  Replayed result() && { return std::move(out_); }
-
- private:
-  const models::PalpationRuntime& runtime_;
-  laws::PalpationState state_;
-  Replayed out_;
-};
-
-/// The recorded motion: poses through a spline, the recorded ones exactly, derivatives from it.
-class Motion {
- public:
-  Motion(const trial::PalpationMeasurement& recording, const math::PoseSpline& spline,
-         const math::Vec3& down, double delay_s)
-      : recording_(recording), spline_(spline), down_(down), delay_s_(delay_s) {}
-
-  effects::HandleMotion at(double t_s) const {
-    const double t = std::clamp(t_s - delay_s_, recording_.t_s.front(), recording_.t_s.back());
-    return {spline_.pose(t),
-            spline_.velocity_m_s(t),
-            spline_.angular_velocity_rad_s(t),
-            spline_.acceleration_m_s2(t),
-            spline_.angular_acceleration_rad_s2(t),
-            down_};
-  }
-  effects::HandleMotion at_sample(std::size_t k) const {
-    effects::HandleMotion out = at(recording_.t_s[k]);
-    if (delay_s_ == 0.0) out.X_VH = recording_.X_VH[k];
-    return out;
-  }
-
- private:
-  const trial::PalpationMeasurement& recording_;
-  const math::PoseSpline& spline_;
-  math::Vec3 down_;
-  double delay_s_;
-};
 
 }  // namespace
 
 core::Result<Replayed> replay(const models::PalpationRuntime& runtime,
                               const trial::PalpationMeasurement& recording, const math::Vec3& down,
                               const core::Progress& progress) {
-  TRY(steps_of(recording));
-  const auto spline = math::PoseSpline::make(recording.t_s, recording.X_VH);
-  if (!spline) return Error{spline.error().code, recording.file + ": " + spline.error().what};
-  const Motion motion(recording, *spline, down, runtime.delay_s());
-  Run run(runtime);
-  run.keep(motion.at_sample(0));
-  for (std::size_t k = 1; k < recording.t_s.size(); ++k) {
-    const double from = recording.t_s[k - 1], width = recording.t_s[k] - from;
-    const std::uint64_t steps = steps_between(from, recording.t_s[k]);
-    for (std::uint64_t s = 1; s < steps; ++s)
-      run.step(motion.at(from + width * double(s) / double(steps)));
-    run.keep(motion.at_sample(k));
-    if (progress && k % kSamplesPerWord == 0 && !progress(double(k) / double(recording.t_s.size())))
+  TRY(check_times(recording));
+  const auto motion = models::PalpationMotion::through(recording.t_s, recording.X_VH, down);
+  if (!motion) return Error{motion.error().code, recording.file + ": " + motion.error().what};
+  models::PalpationWalk walk(runtime);
+  Replayed out;
+  for (std::size_t k = 0; k < recording.t_s.size(); ++k) {
+    const auto answer = walk.to(recording.t_s[k], *motion);
+    out.wrench_H.push_back(answer.wrench_H);
+    out.deflection_m.push_back(answer.deflection_m);
+    out.converged.push_back(answer.converged);
+    const auto then = models::between_samples(*motion, recording.t_s[k] - runtime.delay_s());
+    out.samples_in_volume +=
+        runtime.field().geometry().contains(runtime.tip_m(then.X_VH, answer.deflection_m));
+    if (progress && k % kSamplesPerWord == kSamplesPerWord - 1 &&
+        !progress(double(k) / double(recording.t_s.size())))
       return Error{Errc::cancelled, "the replay was stopped"};
   }
-  return std::move(run).result();
+  out.steps = walk.steps();
+  out.not_converged = walk.not_converged();
+  return out;
+}
+
+std::string motion_csv(const models::PalpationMotion& motion) {
+  std::string out =
+      "t_s,px_m,py_m,pz_m,qw,qx,qy,qz,vx_m_s,vy_m_s,vz_m_s,omega_x_rad_s,omega_y_rad_s,"
+      "omega_z_rad_s,ax_m_s2,ay_m_s2,az_m_s2,alpha_x_rad_s2,alpha_y_rad_s2,alpha_z_rad_s2\n";
+  const auto cells = [](const math::Vec3& v) {
+    return fmt::format("{},{},{}", v.x(), v.y(), v.z());
+  };
+  for (std::size_t k = 0; k < motion.t_s.size(); ++k) {
+    const auto& [X_VH, v_m_s, omega_rad_s, a_m_s2, alpha_rad_s2, down] = motion.handle[k];
+    out += fmt::format("{},{},{},{},{},{},{},{},{},{}\n", motion.t_s[k], cells(X_VH.p), X_VH.q.w(),
+                       X_VH.q.x(), X_VH.q.y(), X_VH.q.z(), cells(v_m_s), cells(omega_rad_s),
+                       cells(a_m_s2), cells(alpha_rad_s2));
+  }
+  return out;
 }
 
 }  // namespace replay

@@ -2,18 +2,15 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "core/progress.hpp"
 #include "core/result.hpp"
-#include "models/palpation_runtime.hpp"
+#include "models/palpation_stream.hpp"
 #include "trial/measurement_set.hpp"
 
 namespace tractus::replay {
-
-/// The published rate of the simulation, Hz: recorded motion is interpolated to it [Zoller2020,
-/// "Parameter tuning"].
-inline constexpr double kRate_Hz = 4000.0;
 
 /// A model's answer to one recording, at the recording's times.
 struct Replayed {
@@ -21,16 +18,17 @@ struct Replayed {
       wrench_H;  ///< simulated: what the bone does to the probe, at the origin of H, in H
   std::vector<math::Vec2> deflection_m;  ///< δ of the tip, in H
   std::vector<std::uint8_t> converged;   ///< 1 where the equilibrium was reached
-  std::uint64_t steps = 0;  ///< at kRate_Hz, the ones between the recording's times among them
+  std::uint64_t steps =
+      0;  ///< at the published rate, the ones between the recording's times among them
   std::uint64_t not_converged = 0;  ///< of those
   std::uint64_t samples_in_volume =
       0;  ///< recorded times at which the bent tip lay within the volume's box
 };
 
-/// Replays one recording. Between two recorded times the motion runs on cubic splines
-/// (math::PoseSpline) in equal steps of at most 1 / kRate_Hz, so that every recorded time is a step
-/// of its own and gives its recorded pose; a recording at kRate_Hz or faster is taken step for
-/// step. Each step starts from the deflection of the last, the first from the unbent probe.
+/// Replays one recording: a models::PalpationWalk along the spline through its poses. Between two
+/// recorded times are equal steps of at most 1 / models::kPalpationRate_Hz, so that every recorded
+/// time is a step of its own and gives its recorded pose; a recording at that rate or faster is taken
+/// step for step.
 ///
 /// Assumes that the hand moved as recorded whatever the model answers [Zoller2020, "Discussion"].
 /// The model's effects act, measurement effects too: the answer is what a sensor would have said.
@@ -42,5 +40,9 @@ core::Result<Replayed> replay(const models::PalpationRuntime& runtime,
                               const trial::PalpationMeasurement& recording,
                               const math::Vec3& down = -math::Vec3::UnitZ(),
                               const core::Progress& progress = {});
+
+/// The motion that the forces follow from, a row per sample, its columns named as the inputs of an FMU
+/// (shared/fmu/palpation.cpp). Numbers are read back to the same bits.
+std::string motion_csv(const models::PalpationMotion& motion);
 
 }  // namespace tractus::replay

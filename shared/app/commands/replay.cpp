@@ -151,19 +151,33 @@ Json summary_of(const ReplayWork& work) {
          {"steps", replayed.steps},
          {"steps_not_converged", replayed.not_converged}});
   }
-  json["rate_Hz"] = replay::kRate_Hz;
+  json["rate_Hz"] = models::kPalpationRate_Hz;
   json["steps"] = steps;
   json["steps_not_converged"] = not_converged;
   for (const auto& row : work.rows) json["table"].push_back(replay::to_json(row));
   return json;
 }
 
-Result<void> write_trials(const ReplayWork& work, const fs::path& folder) {
+Result<void> create_folder(const fs::path& folder) {
   std::error_code failure;
   fs::create_directory(folder, failure);
-  if (failure)
-    return Error{Errc::io,
-                 fmt::format("{}: cannot create: {}", folder.string(), failure.message())};
+  if (!failure) return {};
+  return Error{Errc::io, fmt::format("{}: cannot create: {}", folder.string(), failure.message())};
+}
+
+Result<void> write_motion(const ReplayWork& work, const fs::path& folder) {
+  TRY(create_folder(folder));
+  const auto down = TRY(trial::stated_down(work.set));
+  for (const auto& recording : work.set.trials) {
+    const auto motion = TRY(models::PalpationMotion::through(recording.t_s, recording.X_VH, down));
+    TRY(core::write_file(folder / (recording.id + ".csv"),
+                         core::bytes_of(replay::motion_csv(motion))));
+  }
+  return {};
+}
+
+Result<void> write_trials(const ReplayWork& work, const fs::path& folder) {
+  TRY(create_folder(folder));
   const replay::ProbePlace probe{work.model.base.length_m, work.model.base.pose_offset_m};
   for (std::size_t k = 0; k < work.set.trials.size(); ++k) {
     const auto& recording = work.set.trials[k];
@@ -179,6 +193,7 @@ Result<void> write_trials(const ReplayWork& work, const fs::path& folder) {
 Result<void> write(const ReplayWork& work, const Options& options) {
   auto scratch = TRY(core::ScratchFolder::make(options.out));
   TRY(write_trials(work, scratch.path() / "trials"));
+  TRY(write_motion(work, scratch.path() / "motion"));
   std::vector<math::Wrench> measured, simulated;
   for (std::size_t k = 0; k < work.set.trials.size(); ++k) {
     const auto& m = work.set.trials[k].wrench_H;
@@ -209,7 +224,7 @@ void say(const ReplayWork& work, const Options& options) {
   fmt::print(
       "{:.0f} steps at {:.0f} Hz, {:.2f} µs each; {:.0f} ({:.2g} %) did not reach the "
       "equilibrium.\n",
-      steps, replay::kRate_Hz, 1e6 * work.seconds / steps, missed, 100.0 * missed / steps);
+      steps, models::kPalpationRate_Hz, 1e6 * work.seconds / steps, missed, 100.0 * missed / steps);
   for (std::size_t k = 0; k < work.replayed.size(); ++k)
     if (work.replayed[k].samples_in_volume == 0)
       fmt::print(
