@@ -69,11 +69,12 @@ std::string variable_xml(const Variable& v, std::size_t reference) {
       attribute("description", v.description), real);
 }
 
-/// Both forces depend on all that is given, and are computed from it: FMI counts variables from 1.
-std::string structure_xml() {
+/// All outputs depend on all that is given, and are computed from it: FMI counts variables from 1.
+std::string structure_xml(std::span<const Variable> variables) {
   std::string unknowns;
-  for (const Place output : {Place::fz_N, Place::tz_Nm})
-    unknowns += fmt::format("      <Unknown index=\"{}\"/>\n", std::size_t(output) + 1);
+  const Order order = order_of(variables);
+  for (std::size_t output = order.inputs; output < order.first_parameter; ++output)
+    unknowns += fmt::format("      <Unknown index=\"{}\"/>\n", output + 1);
   return fmt::format(
       "  <ModelStructure>\n    <Outputs>\n{0}    </Outputs>\n    <InitialUnknowns>\n{0}"
       "    </InitialUnknowns>\n  </ModelStructure>\n",
@@ -82,15 +83,12 @@ std::string structure_xml() {
 
 }  // namespace
 
-std::string description_xml(const models::ProbingModel& model, std::span<const Variable> variables,
-                            std::string_view guid, std::string_view version) {
+std::string description_xml(const Description& description) {
+  const std::span<const Variable> variables = description.variables;
   std::string out = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<fmiModelDescription";
-  out += attribute("fmiVersion", "2.0") + attribute("modelName", model.name) +
-         attribute("guid", guid) +
-         attribute("description",
-                   "Force and torque of a probe in bone from its motion: a model of Tractus. Not a "
-                   "medical device") +
-         attribute("generationTool", fmt::format("Tractus {}", version)) +
+  out += attribute("fmiVersion", "2.0") + attribute("modelName", description.model_name) +
+         attribute("guid", description.guid) + attribute("description", description.summary) +
+         attribute("generationTool", fmt::format("Tractus {}", description.version)) +
          attribute("variableNamingConvention", "structured") + ">\n";
   out += "  <CoSimulation" + attribute("modelIdentifier", kModelIdentifier) +
          " canHandleVariableCommunicationStepSize=\"true\" canInterpolateInputs=\"true\""
@@ -101,7 +99,7 @@ std::string description_xml(const models::ProbingModel& model, std::span<const V
       "refused for\"/>\n  </LogCategories>\n  <DefaultExperiment startTime=\"0\" "
       "stepSize=\"0.001\"/>\n  <ModelVariables>\n";
   for (std::size_t k = 0; k < variables.size(); ++k) out += variable_xml(variables[k], k);
-  return out + "  </ModelVariables>\n" + structure_xml() + "</fmiModelDescription>\n";
+  return out + "  </ModelVariables>\n" + structure_xml(variables) + "</fmiModelDescription>\n";
 }
 
 }  // namespace fmu

@@ -11,8 +11,14 @@ namespace tractus::fmu {
 /// The name of the shared object in an FMU, and the `modelIdentifier`.
 inline constexpr const char* kModelIdentifier = "tractus_model";
 
-/// @param version  of this program. The same model gives the same text.
-std::string description_xml(const models::ProbingModel& model, std::span<const Variable> variables,
-                            std::string_view guid, std::string_view version);
+struct Description {
+  std::string model_name, summary;
+  std::span<const Variable> variables;
+  std::string guid;
+  std::string_view version;  ///< of this program
+};
+
+/// The same description gives the same text.
+std::string description_xml(const Description& description);
 
 }  // namespace tractus::fmu

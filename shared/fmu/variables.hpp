@@ -1,4 +1,4 @@
-/// What a model looks like from outside as an FMU: inputs, outputs and parameters.
+/// What a model looks like from outside as an FMU: inputs, outputs and parameters, in this order.
 #pragma once
 
 #include <array>
@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
+#include "core/json.hpp"
 #include "core/named.hpp"
-#include "core/result.hpp"
-#include "models/probing_model.hpp"
+#include "effects/effect.hpp"
 
 namespace tractus::fmu {
 
@@ -33,36 +33,22 @@ struct Variable {
   std::string pointer = {};  ///< of a parameter: where it stands in the model's JSON
 };
 
-/// The first variables of every model, in this order; its parameters follow. A variable's index is
-/// its value reference.
-enum class Place : std::size_t {
-  x_m,
-  v_m_s,
-  a_m_s2,
-  theta_rad,
-  omega_rad_s,
-  recorded_tz_Nm,
-  rest_m_s,
-  rest_rad_s,
-  fz_N,
-  tz_Nm,
-  first_parameter
+/// How many inputs lead the variables, and where the parameters begin. A variable's index is its value
+/// reference.
+struct Order {
+  std::size_t inputs = 0, first_parameter = 0;
 };
-inline constexpr std::size_t kInputs = std::size_t(Place::fz_N);
-inline constexpr std::size_t kFirstParameter = std::size_t(Place::first_parameter);
+Order order_of(std::span<const Variable> variables);
 
-/// The start values are the model's numbers.
-std::vector<Variable> variables(const models::ProbingModel& model);
+/// Adds the parameters of an effect, the `k`th of its model.
+void add_effect(const effects::EffectInstance& use, const effects::EffectFacts& facts,
+                std::size_t k, std::vector<Variable>& out);
 
-/// The model with other numbers, one value per variable. Errors: bad_input or out_of_range naming
-/// the parameter.
-core::Result<models::ProbingModel> with_parameters(const models::ProbingModel& model,
-                                                   std::span<const Variable> variables,
-                                                   std::span<const double> values);
+/// A model's JSON with other numbers, one value per variable.
+core::Json with_values(core::Json model, std::span<const Variable> variables,
+                       std::span<const double> values);
 
-/// The model as an FMU carries it: every number is stated, in the order of `variables`.
-std::string carried_text(models::ProbingModel model);
-/// {8-4-4-4-12}, of the digest of that text.
+/// {8-4-4-4-12}, of the digest of the texts that an FMU carries.
 std::string guid(std::string_view carried_text);
 
 }  // namespace tractus::fmu

@@ -5,9 +5,9 @@ function forces = tractus_model(file, motion, parameters)
 %     What the model has: a struct array with name, causality (input, output, parameter), unit, start, description, reference.
 %
 %   forces = tractus_model(FILE, motion)
-%     A struct with the columns fz_N and tz_Nm, a row for each moment of the motion. motion is a struct of columns: t_s and inputs, as
-%     x_m. Where v_m_s, a_m_s2 or omega_rad_s is missing, it is the difference quotient (gradient) of x_m, v_m_s or theta_rad;
-%     other inputs keep their start value.
+%     A struct with a column for each output, as fz_N and tz_Nm, a row for each moment of the motion. motion is a struct of columns: t_s and
+%     inputs, as x_m. Where v_m_s, a_m_s2 or omega_rad_s is missing, it is the difference quotient (gradient) of x_m, v_m_s or theta_rad,
+%     and of a palpation model vx_m_s that of px_m, ax_m_s2 that of vx_m_s, and so on; other inputs keep their start value.
 %
 %   forces = tractus_model(FILE, motion, {NAME, VALUE; ...})
 %     The same with other values of parameters.
@@ -119,7 +119,11 @@ function [times, table] = table_of(motion, inputs)
 end
 
 function motion = with_rates(motion, times)
-  for pair = {'x_m', 'v_m_s'; 'v_m_s', 'a_m_s2'; 'theta_rad', 'omega_rad_s'}'
+  pairs = {'x_m', 'v_m_s'; 'v_m_s', 'a_m_s2'; 'theta_rad', 'omega_rad_s'};
+  for axis = 'xyz'
+    pairs = [pairs; {['p' axis '_m'], ['v' axis '_m_s']; ['v' axis '_m_s'], ['a' axis '_m_s2']}]; %#ok<AGROW>
+  end
+  for pair = pairs'
     if isfield(motion, pair{1}) && ~isfield(motion, pair{2}) && numel(times) > 1
       motion.(pair{2}) = gradient(double(motion.(pair{1})(:)), times);
     end

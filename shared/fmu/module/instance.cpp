@@ -2,56 +2,39 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
+#include <array>
 #include <cmath>
-#include <filesystem>
 
-#include "core/file.hpp"
-#include "core/json.hpp"
 #include "core/try.hpp"
-#include "effects/probing_effect.hpp"
-#include "fmu/module/file_uri.hpp"
 
 namespace tractus {
 namespace fmu {
 namespace {
 
-namespace fs = std::filesystem;
 using core::Errc;
 using core::Error;
 using core::Result;
 
-constexpr double kTravel_m = 1.0;  // the motion says how far it goes, as in a replay
 constexpr double kOfAStep = 1e-6;  // rounding between two importers' ways to add up time
-constexpr std::uint64_t kMostBytes = 64ull << 20;
-
-Result<models::ProbingModel> read_carried(std::string_view guid_given, std::string_view resources) {
-  const fs::path path = TRY(path_of(resources)) / "model.json";
-  const auto bytes = TRY(core::read_file(path, kMostBytes));
-  const std::string_view text = core::text_of(bytes);
-  if (guid(text) != guid_given)
-    return Error{Errc::corrupt,
-                 fmt::format("{}: changed since the export, or of another model than guid {}",
-                             path.string(), guid_given.substr(0, 60))};
-  const auto json = TRY(core::parse_json(text, path.string()));
-  return models::ProbingModel::from_json(json, path.string() + ": ");
-}
 
 }  // namespace
 
-Instance::Instance(models::ProbingModel model, std::vector<Variable> variables)
-    : model_(std::move(model)), variables_(std::move(variables)), state_(beginning()) {}
+Instance::Instance(std::unique_ptr<Carried> carried)
+    : carried_(std::move(carried)),
+      variables_(carried_->variables()),
+      order_(order_of(variables_)),
+      state_(beginning()) {}
 
 Result<std::unique_ptr<Instance>> Instance::make(std::string_view guid,
                                                  std::string_view resources) {
-  auto model = TRY(read_carried(guid, resources));
-  auto all = variables(model);
-  return std::unique_ptr<Instance>(new Instance(std::move(model), std::move(all)));
+  auto carried = TRY(read_carried(guid, resources));
+  return std::unique_ptr<Instance>(new Instance(std::move(carried)));
 }
 
 Instance::State Instance::beginning() const {
   State out;
   for (const Variable& v : variables_) out.values.push_back(v.start);
+  out.derivatives.resize(order_.inputs);
   return out;
 }
 
@@ -107,7 +90,7 @@ Result<void> Instance::set(References references, const double* values) {
   for (std::size_t k = 0; k < references.size(); ++k) TRY(check(references[k], values[k]));
   for (std::size_t k = 0; k < references.size(); ++k) {
     state_.values[references[k]] = values[k];
-    if (references[k] >= kFirstParameter) state_.stream.reset();
+    if (references[k] >= order_.first_parameter) state_.simulation.reset();
   }
   return {};
 }
@@ -115,7 +98,7 @@ Result<void> Instance::set(References references, const double* values) {
 Result<void> Instance::set_derivatives(References references, const int* orders,
                                        const double* values) {
   for (std::size_t k = 0; k < references.size(); ++k)
-    if (references[k] >= kInputs || orders[k] != 1 || !std::isfinite(values[k]))
+    if (references[k] >= order_.inputs || orders[k] != 1 || !std::isfinite(values[k]))
       return Error{
           Errc::bad_input,
           fmt::format(
@@ -128,47 +111,19 @@ Result<void> Instance::set_derivatives(References references, const int* orders,
 
 /// Makes the model run with the parameters as they stand, unless it does.
 Result<void> Instance::prepare() {
-  if (state_.stream) return {};
-  const auto model = TRY(with_parameters(model_, variables_, state_.values));
-  for (const effects::EffectInstance& use : model.effects) {
-    const auto facts = TRY(effects::probing_facts(use));
-    if (facts.free_per_trial && !state_.stop_s)
-      return Error{Errc::bad_input, fmt::format("{} runs over the whole trial: fmi2SetupExperiment "
-                                                "must give the stop time",
-                                                use.id)};
-  }
-  auto runtime = TRY(models::ProbingRuntime::make(model, kTravel_m));
-  state_.runtime = std::make_shared<const models::ProbingRuntime>(std::move(runtime));
-  state_.stream.emplace(*state_.runtime, state_.start_s, state_.stop_s.value_or(state_.start_s));
+  if (state_.simulation) return {};
+  state_.simulation = TRY(carried_->simulation(state_.values, state_.start_s, state_.stop_s));
   return {};
 }
 
-effects::ProbingTick Instance::tick() const noexcept {
-  const auto at = [this](Place place) { return state_.values[std::size_t(place)]; };
-  return {.t_s = state_.t_s,
-          .x_m = at(Place::x_m),
-          .v_m_s = at(Place::v_m_s),
-          .a_m_s2 = at(Place::a_m_s2),
-          .theta_rad = at(Place::theta_rad),
-          .omega_rad_s = at(Place::omega_rad_s),
-          .tz_Nm = at(Place::recorded_tz_Nm),
-          .rest_m_s = at(Place::rest_m_s),
-          .rest_rad_s = at(Place::rest_rad_s)};
-}
-
-Result<models::ProbingAnswer> Instance::answer() {
+Result<std::vector<double>> Instance::outputs() {
   TRY(expect(state_.phase != Phase::instantiated, "reading a force"));
   TRY(prepare());
-  const auto out = state_.stream->at(tick());
-  if (!std::isfinite(out.fz_N) || !std::isfinite(out.tz_Nm))
-    return Error{Errc::out_of_range,
-                 fmt::format("fz_N = {}, tz_Nm = {} at {} s: the motion is beyond all measure",
-                             out.fz_N, out.tz_Nm, state_.t_s)};
-  return out;
+  return state_.simulation->outputs(state_.t_s, state_.values);
 }
 
 Result<void> Instance::get(References references, double* values) {
-  std::optional<models::ProbingAnswer> forces;
+  std::vector<double> found;
   for (std::size_t k = 0; k < references.size(); ++k) {
     if (references[k] >= variables_.size())
       return Error{Errc::bad_input, fmt::format("value reference {}: there are {} variables",
@@ -177,8 +132,8 @@ Result<void> Instance::get(References references, double* values) {
       values[k] = state_.values[references[k]];
       continue;
     }
-    if (!forces) forces = TRY(answer());
-    values[k] = references[k] == unsigned(Place::fz_N) ? forces->fz_N : forces->tz_Nm;
+    if (found.empty()) found = TRY(outputs());
+    values[k] = found[references[k] - order_.inputs];
   }
   return {};
 }
@@ -194,9 +149,13 @@ Result<void> Instance::step(double t_s, double length_s) {
     return Error{
         Errc::bad_input,
         fmt::format("fmi2DoStep: a step from {} s, but the model is at {} s", t_s, state_.t_s)};
-  state_.t_s = t_s;
-  state_.stream->keep(tick());
-  for (std::size_t k = 0; k < kInputs; ++k) state_.values[k] += length_s * state_.derivatives[k];
+  if (length_s > carried_->longest_step_s())
+    return Error{Errc::bad_input,
+                 fmt::format("fmi2DoStep: a step of {} s at {} s: at most {} s is expected",
+                             length_s, t_s, carried_->longest_step_s())};
+  TRY(state_.simulation->keep(t_s, state_.values));
+  for (std::size_t k = 0; k < order_.inputs; ++k)
+    state_.values[k] += length_s * state_.derivatives[k];
   state_.t_s = t_s + length_s;
   return {};
 }
@@ -207,8 +166,20 @@ Result<void> Instance::terminate() {
   return {};
 }
 
-std::unique_ptr<Instance::State> Instance::state() const { return std::make_unique<State>(state_); }
-void Instance::restore(const State& state) { state_ = state; }
+std::unique_ptr<Instance::State> Instance::state() const {
+  return std::make_unique<State>(copy_of(state_));
+}
+void Instance::restore(const State& state) { state_ = copy_of(state); }
+
+Instance::State Instance::copy_of(const State& state) {
+  return {state.phase,
+          state.values,
+          state.derivatives,
+          state.start_s,
+          state.t_s,
+          state.stop_s,
+          state.simulation ? state.simulation->copy() : nullptr};
+}
 
 }  // namespace fmu
 }  // namespace tractus

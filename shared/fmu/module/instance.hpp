@@ -1,7 +1,6 @@
 /// One instance of an exported model, as an importer drives it: what FMI's functions do.
 #pragma once
 
-#include <array>
 #include <memory>
 #include <optional>
 #include <span>
@@ -9,8 +8,7 @@
 #include <vector>
 
 #include "core/result.hpp"
-#include "fmu/variables.hpp"
-#include "models/probing_stream.hpp"
+#include "fmu/module/simulation.hpp"
 
 namespace tractus::fmu {
 
@@ -25,8 +23,7 @@ class Instance {
  public:
   using References = std::span<const unsigned int>;
 
-  /// @param guid  that the importer read. @param resources  URI of the folder with model.json.
-  /// Errors: bad_input, not_found, io, corrupt (another model than the guid's).
+  /// Parameters and errors are those of read_carried.
   static core::Result<std::unique_ptr<Instance>> make(std::string_view guid,
                                                       std::string_view resources);
 
@@ -55,25 +52,25 @@ class Instance {
  public:
   struct State {
     Phase phase = Phase::instantiated;
-    std::vector<double> values;                 ///< by value reference
-    std::array<double, kInputs> derivatives{};  ///< of the inputs
+    std::vector<double> values;       ///< by value reference
+    std::vector<double> derivatives;  ///< of the inputs
     double start_s = 0.0, t_s = 0.0;
     std::optional<double> stop_s = {};
-    std::shared_ptr<const models::ProbingRuntime> runtime = {};
-    std::optional<models::ProbingStream> stream = {};  ///< once the parameters are known
+    std::unique_ptr<Simulation> simulation = {};  ///< once the parameters are known
   };
 
  private:
-  Instance(models::ProbingModel model, std::vector<Variable> variables);
+  explicit Instance(std::unique_ptr<Carried> carried);
   State beginning() const;
+  static State copy_of(const State& state);
   core::Result<void> expect(bool holds, const char* call) const;
   core::Result<void> check(unsigned int reference, double value) const;
   core::Result<void> prepare();
-  core::Result<models::ProbingAnswer> answer();
-  effects::ProbingTick tick() const noexcept;
+  core::Result<std::vector<double>> outputs();
 
-  models::ProbingModel model_;
-  std::vector<Variable> variables_;
+  std::unique_ptr<Carried> carried_;
+  std::span<const Variable> variables_;
+  Order order_;
   State state_;
 };
 
