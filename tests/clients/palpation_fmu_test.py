@@ -248,6 +248,8 @@ class Refusals(Palpation):
         self.assertRegex(said("--box", "0,0,0", "1,1,1"), 'names no "volume"')
         self.assertRegex(said("--measurements", self.folder / "none"), "none")
         self.assertRegex(said("--measurements", self.set, "--margin", "wide"), "--margin")
+        self.assertRegex(said("--measurements", self.set, "--margin", "-1"), "--margin: below 0")
+        self.assertRegex(said("--box", "0,0,0", "1,1,1", "--margin", "1"), "--margin goes with --measurements")
         content["volume"] = "set/bone.nrrd"
         self.assertRegex(said("--box", "900,0,0", "901,1,1", model=self.write(content, "far")), "outside the volume")
         content["effects"] = [{"id": "time_delay", "parameters": {"delay_s": -0.01}}]

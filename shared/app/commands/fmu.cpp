@@ -31,6 +31,8 @@ Result<FieldOptions> field_options(const FmuOptions& options) {
     const auto at = TRY(point_m(corner, "--box"));
     out.box_m.push_back(at);
   }
+  if (!options.box.empty() && !options.margin.empty())
+    return Error{Errc::bad_input, "--margin goes with --measurements; a --box is taken as it is"};
   if (!options.margin.empty()) out.margin_m = TRY(length_m(options.margin, "--margin"));
   if (!(out.margin_m >= 0.0))
     return Error{Errc::out_of_range, "--margin: below 0, a length is expected"};
