@@ -17,7 +17,7 @@ namespace tractus::tracing {
 class Tracer {
  public:
   static constexpr std::size_t kMostWaiting = 2048, kMostSent = 512;
-  static constexpr std::chrono::milliseconds kLongestWait{60'000}, kLastTry{2'000};
+  static constexpr std::chrono::milliseconds kLongestWait{60'000}, kLastTry{1'000};
 
   /// Called with one line when spans are not taken, and with "" when they are again.
   using Log = std::function<void(const std::string& why)>;
