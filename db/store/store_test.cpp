@@ -353,6 +353,25 @@ TEST_P(JobQueue, AJobWhoseLeaseIsOverWaitsAgainAndIsItsFormerOwnersNoMore) {
   EXPECT_TRUE(outcome) << outcome.error().what;
 }
 
+TEST_P(JobQueue, AJobKeepsItsTraceForWhoeverClaimsIt) {
+  Opened db(GetParam());
+  // The example of W3C Trace Context, section 3.2.
+  const std::string trace = "00-4bf92f3577b34da6a3ce929d0e0e4736-00f067aa0ba902b7-01";
+  auto outcome = db.store.write([&](Writing& tx) -> core::Result<void> {
+    TRY(queue_job(tx, JobKind::metrics, "t", 10, trace));
+    TRY(queue_job(tx, JobKind::metrics, "without", 20));
+    auto first = TRY(claim_job(tx, {JobKind::metrics}, 30, {"dies", 100}));
+    EXPECT_EQ(first->traceparent, trace);
+    TRY(requeue_lapsed_jobs(tx, 500));
+    auto again = TRY(claim_job(tx, {JobKind::metrics}, 510, {"lives", 100}));
+    EXPECT_EQ(again->traceparent, trace);
+    auto other = TRY(claim_job(tx, {JobKind::metrics}, 510, {"lives", 100}));
+    EXPECT_EQ(other->traceparent, "");
+    return {};
+  });
+  EXPECT_TRUE(outcome) << outcome.error().what;
+}
+
 TEST_P(JobQueue, AJobLeftOffWaitsAgainAndTheAttemptDoesNotCount) {
   Opened db(GetParam());
   auto again = db.store.write([](Writing& tx) -> core::Result<std::optional<Job>> {

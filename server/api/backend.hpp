@@ -19,6 +19,10 @@ namespace tractus::live {
 class Hub;
 }
 
+namespace tractus::tracing {
+class Tracer;
+}
+
 namespace tractus::api {
 
 /// Writes an event to the log as fields, which must not contain names, addresses or text that a
@@ -59,8 +63,9 @@ struct Backend {
   TrialViews trial_views{};
   HeldCohorts held_cohorts{};
   PlatformKeys platform_keys{};
-  Notifier* notifier = nullptr;  ///< null: nobody is told of events by e-mail or webhook
-  PacsImports* pacs = nullptr;   ///< null: no PACS is stated
+  Notifier* notifier = nullptr;       ///< null: nobody is told of events by e-mail or webhook
+  PacsImports* pacs = nullptr;        ///< null: no PACS is stated
+  tracing::Tracer* tracer = nullptr;  ///< null: uploads are not traced
 };
 
 }  // namespace tractus::api

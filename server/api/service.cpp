@@ -16,6 +16,7 @@
 #include "server/api/people/authentication.hpp"
 #include "server/api/people/throttle.hpp"
 #include "server/api/people/token_scopes.hpp"
+#include "tracing/tracer.hpp"
 
 namespace tractus {
 namespace api {
@@ -277,11 +278,14 @@ void note(Backend& backend, const std::string& route, const http::Request& reque
   constexpr double kLong_s = 5.0;
   backend.telemetry.count(route, response.status, took_s, request.body.size());
   if (!backend.log || (response.status < 500 && took_s < kLong_s && !backend.logs_requests)) return;
-  backend.log({{"what", "request"},
-               {"route", route},
-               {"status", response.status},
-               {"took_s", took_s},
-               {"body_bytes", request.body.size()}});
+  core::Json line{{"what", "request"},
+                  {"route", route},
+                  {"status", response.status},
+                  {"took_s", took_s},
+                  {"body_bytes", request.body.size()}};
+  const auto trace = tracing::parse_traceparent(request.header("traceparent"));
+  if (backend.tracer && trace) line["trace_id"] = trace->trace_id;
+  backend.log(line);
 }
 
 }  // namespace

@@ -32,6 +32,7 @@
 #include "server/http/static_files.hpp"
 #include "server/jobs/runner.hpp"
 #include "server/live/hub.hpp"
+#include "tracing/tracer.hpp"
 
 namespace tractus {
 namespace app {
@@ -268,12 +269,18 @@ core::Result<void> serve(const ServeOptions& given) {
   if (options.mail) told.mail = TRY(api::read_mail_settings(*options.mail));
   const auto pseudonym_key = TRY(pseudonym_key_of(
       options.pseudonym_key.value_or(given.data / "pseudonyms" / "key"), data.store));
+  const auto tracer =
+      tracing::tracer_of_environment("tractus-server", TRACTUS_VERSION, [](const std::string& why) {
+        core::Json line{{"what", "traces"}};
+        if (!why.empty()) line["error"] = why;
+        log_line(line);
+      });
   auto runner = jobs::Runner::start(
       data.store, data.objects, {data.secrets.case_key(), pseudonym_key},
       [](const std::string& line) {
         log_line({{"what", "job"}, {"line", line}});
       },
-      options.job_lease);
+      options.job_lease, tracer.get());
   if (!runner) return runner.error();
   BackupFolder backups(given.data, given.backups.value_or(given.data / "backups"));
   TRY(backups.tidy(!data.store.shared()));
@@ -296,7 +303,8 @@ core::Result<void> serve(const ServeOptions& given) {
                        .backups = &backups,
                        .import_volume = import_volume_in_subprocess,
                        .scratch = space,
-                       .pseudonym_key = pseudonym_key};
+                       .pseudonym_key = pseudonym_key,
+                       .tracer = tracer.get()};
   live::Hub hub({.store = data.store,
                  .now_utc_us = core::utc_us,
                  .refused =

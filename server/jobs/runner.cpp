@@ -7,6 +7,7 @@
 
 #include "core/bytes.hpp"
 #include "core/clock.hpp"
+#include "core/errc_words.hpp"
 #include "core/try.hpp"
 #include "db/store/cases/case_makings.hpp"
 #include "db/store/cohort/analyses.hpp"
@@ -51,14 +52,15 @@ core::Result<void> show_failure(store::Writing& tx, const store::Job& job,
 
 core::Result<std::unique_ptr<Runner>> Runner::start(store::Store& store,
                                                     const store::Objects& objects, Keys keys,
-                                                    Log log, std::chrono::milliseconds lease) {
+                                                    Log log, std::chrono::milliseconds lease,
+                                                    tracing::Tracer* tracer) {
   if (!store.shared()) {
     TRY(store.write(
         [](store::Writing& tx) { return store::requeue_claimed_jobs(tx, core::utc_us()); }));
   }
   TRY(queue_untried_cases(store));
-  auto runner =
-      std::unique_ptr<Runner>(new Runner(store, objects, std::move(keys), std::move(log), lease));
+  auto runner = std::unique_ptr<Runner>(
+      new Runner(store, objects, std::move(keys), std::move(log), lease, tracer));
   auto listening = TRY(store.signals().listen(
       store::kJobsChannel, [own = runner.get()](const store::Signal&) { own->wake(); }));
   runner->listening_ = std::move(listening);
@@ -66,12 +68,13 @@ core::Result<std::unique_ptr<Runner>> Runner::start(store::Store& store,
 }
 
 Runner::Runner(store::Store& store, const store::Objects& objects, Keys keys, Log log,
-               std::chrono::milliseconds lease)
+               std::chrono::milliseconds lease, tracing::Tracer* tracer)
     : store_(store),
       objects_(objects),
       keys_(std::move(keys)),
       log_(std::move(log)),
-      worker_{core::new_id(), std::chrono::microseconds(lease).count()} {
+      worker_{core::new_id(), std::chrono::microseconds(lease).count()},
+      tracer_(tracer) {
   scores_.thread = std::thread([this] { run(scores_); });
   cases_.thread = std::thread([this] { run(cases_); });
   lab_.thread = std::thread([this] {
@@ -158,7 +161,7 @@ bool Runner::do_one(Lane& lane) {
   }
   if (!*job) return false;
   take_in_hand(lane, (*job)->id);
-  const auto done = conclude(lane, **job, work_on(lane, **job));
+  const auto done = conclude(lane, **job, traced_work_on(lane, **job));
   take_in_hand(lane, "");
   if (!done) log_("jobs: " + done.error().what);
   return !ending();
@@ -177,8 +180,9 @@ core::Result<void> Runner::conclude(Lane& lane, const store::Job& job,
     return store_.write(
         [&](store::Writing& tx) { return store::give_back_job(tx, job, core::utc_us()); });
   if (!done) {
-    log_(fmt::format("job {} of {} failed: {}", core::name(job.kind), job.subject,
-                     done.error().what));
+    const auto trace = tracing::parse_traceparent(job.traceparent);
+    log_(fmt::format("job {} of {} failed: {}{}", core::name(job.kind), job.subject,
+                     done.error().what, trace ? " (trace " + trace->trace_id + ")" : ""));
     return note_failure(job, done.error());
   }
   return store_.write_beside(
@@ -199,6 +203,16 @@ bool Runner::is_lost(Lane& lane) {
 bool Runner::ending() {
   const std::lock_guard held(mutex_);
   return ending_;
+}
+
+core::Result<void> Runner::traced_work_on(Lane& lane, const store::Job& job) {
+  const auto parent = tracing::parse_traceparent(job.traceparent);
+  tracing::Span span(parent ? tracer_ : nullptr, fmt::format("job {}", core::name(job.kind)),
+                     tracing::SpanKind::consumer, parent);
+  span.set("tractus.job.attempt", job.attempts);
+  auto done = work_on(lane, job);
+  if (!done) span.set_failed(std::string(core::name(done.error().code)));
+  return done;
 }
 
 core::Result<void> Runner::work_on(Lane& lane, const store::Job& job) {

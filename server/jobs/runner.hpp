@@ -12,6 +12,7 @@
 #include "db/store/people/pseudonyms.hpp"
 #include "db/store/store.hpp"
 #include "db/store/volumes/objects.hpp"
+#include "tracing/tracer.hpp"
 
 namespace tractus::jobs {
 
@@ -36,9 +37,11 @@ class Runner {
 
   /// On a database of this process alone, puts jobs that a dead process had claimed back in the
   /// queue; on a shared one they wait until their `lease` is over. Then starts.
+  /// @param tracer  null: jobs are not traced
   static core::Result<std::unique_ptr<Runner>> start(
       store::Store& store, const store::Objects& objects, Keys keys, Log log,
-      std::chrono::milliseconds lease = std::chrono::seconds(30));
+      std::chrono::milliseconds lease = std::chrono::seconds(30),
+      tracing::Tracer* tracer = nullptr);
   ~Runner();
   Runner(const Runner&) = delete;
   Runner& operator=(const Runner&) = delete;
@@ -57,13 +60,15 @@ class Runner {
   };
 
   Runner(store::Store& store, const store::Objects& objects, Keys keys, Log log,
-         std::chrono::milliseconds lease);
+         std::chrono::milliseconds lease, tracing::Tracer* tracer);
   void run(Lane& lane);
   void keep();
   void renew(const std::vector<std::string>& in_hand);
   /// Does one job; false when there is none.
   bool do_one(Lane& lane);
   core::Result<void> work_on(Lane& lane, const store::Job& job);
+  /// As a span, if the job belongs to a trace.
+  core::Result<void> traced_work_on(Lane& lane, const store::Job& job);
   core::Result<void> conclude(Lane& lane, const store::Job& job, const core::Result<void>& done);
   core::Result<void> note_failure(const store::Job& job, const core::Error& error);
   void take_in_hand(Lane& lane, const std::string& job);
@@ -75,6 +80,7 @@ class Runner {
   const Keys keys_;
   Log log_;
   store::Worker worker_;
+  tracing::Tracer* const tracer_;
   std::mutex mutex_;  ///< guards ending_ and the lanes' woken, job, lost
   bool ending_ = false;
   std::condition_variable changed_;

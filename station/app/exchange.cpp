@@ -98,6 +98,15 @@ std::optional<uplink::ClockOffset> clock_offset(uplink::Server& server,
   return uplink::kept_clock(folder.clock(), core::utc_us(), core::kDay_us);
 }
 
+/// Of this process: what a trial's upload recorded is sent while the next one goes on.
+tracing::Tracer* tracer() {
+  static const auto kTracer = tracing::tracer_of_environment(
+      "tractus-station", TRACTUS_VERSION, [](const std::string& why) {
+        if (!why.empty()) std::fprintf(stderr, "warning: traces are not sent: %s\n", why.c_str());
+      });
+  return kTracer.get();
+}
+
 bool anything_waits(const session::StationFolder& folder) {
   const auto entries = folder.outbox().entries();
   return entries && std::ranges::any_of(*entries, [](const uplink::OutboxEntry& entry) {
@@ -140,7 +149,7 @@ core::Result<uplink::UploadReport> hand_over(const Options& options,
   uplink::Patience patience;
   patience.give_up_after_ns = static_cast<core::Instant_ns>(options.wait_s * 1e9);
   return uplink::upload_all(*server, folder.outbox(), folder.trials(), clock, patience,
-                            stoppable(core::terminal_progress("Upload")), offset);
+                            stoppable(core::terminal_progress("Upload")), offset, tracer());
 }
 
 core::Result<int> sync_cases(const Options& options) {

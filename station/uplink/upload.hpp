@@ -8,6 +8,7 @@
 #include "station/uplink/clock_offset.hpp"
 #include "station/uplink/outbox.hpp"
 #include "station/uplink/server.hpp"
+#include "tracing/tracer.hpp"
 
 namespace tractus::uplink {
 
@@ -38,10 +39,12 @@ struct Patience {
 /// Everything queued, oldest first, order kept: when the server does not answer, nothing younger
 /// goes before. Waits between tries double. Nothing is ever deleted. Errors: io and bad_input of
 /// the outbox, unauthorised. That the server does not answer is no Error but `waiting`.
+/// @param tracer  each trial is a trace, with all its requests; null: none
 core::Result<UploadReport> upload_all(Server& server, const Outbox& outbox,
                                       const std::filesystem::path& trials_folder,
                                       core::Clock& clock, const Patience& patience,
                                       const core::Progress& progress = {},
-                                      const std::optional<ClockOffset>& offset = {});
+                                      const std::optional<ClockOffset>& offset = {},
+                                      tracing::Tracer* tracer = nullptr);
 
 }  // namespace tractus::uplink

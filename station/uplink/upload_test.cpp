@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 #include <stdlib.h>
 
+#include <set>
+
 #include "core/file.hpp"
 #include "station/uplink/double_server.hpp"
 #include "station/uplink/http_server.hpp"
@@ -70,6 +72,49 @@ TEST_F(Uploading, HandsOverEveryTrialOldestFirst) {
   expect_handed_over_once(server);
   EXPECT_NE(server.log.front().find(kFirst), std::string::npos);
   EXPECT_NE(server.log.back().find(kSecond), std::string::npos);
+}
+
+/// Notes the header traceparent of each request.
+class NotingTraces final : public Server {
+ public:
+  core::Result<HttpResponse> send(const Request& request) override {
+    std::string found;
+    for (const auto& [name, value] : request.headers)
+      if (name == "traceparent") found = value;
+    headers.push_back(found);
+    return server.send(request);
+  }
+  DoubleServer server;
+  std::vector<std::string> headers;
+};
+
+TEST_F(Uploading, EachTrialIsATraceWhichItsRequestsName) {
+  NotingTraces noting;
+  std::string sent;
+  {
+    tracing::Tracer tracer(
+        {.url = "http://c/v1/traces"},
+        [&](const std::string& body, auto, const auto&) {
+          return sent += body, tracing::Delivered{tracing::Delivery::taken};
+        },
+        [](const std::string&) {});
+    ASSERT_TRUE(upload_all(noting, *outbox_, trials(), clock_, {}, {}, {}, &tracer));
+  }
+  std::set<std::string> traces, spans;
+  for (const std::string& header : noting.headers) {
+    const auto context = tracing::parse_traceparent(header);
+    ASSERT_TRUE(context) << header;
+    traces.insert(context->trace_id), spans.insert(context->span_id);
+  }
+  EXPECT_EQ(noting.headers.size(), 9u);  // announced, four pieces and one, committed
+  EXPECT_EQ(traces.size(), 2u);          // of two trials
+  EXPECT_EQ(spans.size(), 9u);
+  for (const std::string& secret : {kFirst, kSecond, kCase})
+    EXPECT_EQ(sent.find(secret), std::string::npos) << sent;
+  noting.headers.clear();
+  put("000000000003" + std::string(20, 'c'), bytes_of_size(1000, 3));
+  ASSERT_TRUE(upload(noting));
+  EXPECT_EQ(noting.headers, std::vector<std::string>(3)) << "without a tracer";
 }
 
 TEST_F(Uploading, SendsNothingTwiceWhenAllIsHandedOver) {

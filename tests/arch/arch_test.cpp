@@ -63,6 +63,7 @@ const std::map<std::string, Names> kAllowed = {
      {"shared/core", "shared/math", "shared/statistics", "shared/trial", "shared/metrics",
       "shared/plot"}},
     {"shared/wire", {"shared/core", "shared/math", "shared/trial"}},
+    {"shared/tracing", {"shared/core"}},
     {"shared/plot", {"shared/core"}},
     // The replay's pictures and tables are of a recording and a model together; recorded depths are
     // smoothed as the lab smooths them, or the two would disagree on the same files.
@@ -86,7 +87,8 @@ const std::map<std::string, Names> kAllowed = {
       "station/loop", "station/safety"}},
     // How volumes are stored in bricks: those that are here are not fetched.
     {"station/uplink",
-     {"shared/core", "shared/trial", "shared/wire", "shared/cases", "shared/volume"}},
+     {"shared/core", "shared/trial", "shared/wire", "shared/cases", "shared/volume",
+      "shared/tracing"}},
     {"station/view",
      {"shared/core", "shared/math", "shared/volume", "shared/laws", "shared/models", "shared/cases",
       "shared/trial", "shared/drilling"}},  // the burr, and what it took
@@ -109,7 +111,7 @@ const std::map<std::string, Names> kAllowed = {
     {"server/jobs",
      {"shared/core", "shared/trial", "shared/metrics", "shared/cases", "shared/scenarios",
       "shared/volume", "shared/volume/io", "shared/lab", "shared/lab/io", "shared/assessment",
-      "db/store"}},
+      "shared/tracing", "db/store"}},
     // What stations do just now: their words, the database they share, lines to those who look on.
     {"server/live", {"shared/core", "shared/wire", "db/store", "server/http"}},
     // The effects' labels are part of the API's description, so that pages need none of their own.
@@ -117,7 +119,7 @@ const std::map<std::string, Names> kAllowed = {
      {"server/live", "shared/core", "shared/math", "shared/trial", "shared/effects",
       "shared/metrics", "shared/cases", "shared/scenarios", "shared/study", "shared/volume",
       "shared/wire", "shared/models", "shared/assessment", "shared/statistics", "shared/lab/io",
-      "db/store", "server/http", "server/jobs"}},
+      "shared/tracing", "db/store", "server/http", "server/jobs"}},
 };
 
 bool is_source(const fs::path& path) {

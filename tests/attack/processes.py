@@ -145,10 +145,11 @@ class Postgres:
 class Proxy:
     """nginx by the very configuration that deploy/large hands out."""
 
-    def __init__(self, folder, server_port, certificate_folder):
+    def __init__(self, folder, server_ports, certificate_folder):
         self.port, self.folder = free_port(), folder
         folder.mkdir()
-        settings = {"TRACTUS_SERVERS": f"127.0.0.1:{server_port}", "TRACTUS_LISTEN": f"127.0.0.1:{self.port}", "TRACTUS_RUN": str(folder),
+        servers = " ".join(f"127.0.0.1:{port}" for port in server_ports)
+        settings = {"TRACTUS_SERVERS": servers, "TRACTUS_LISTEN": f"127.0.0.1:{self.port}", "TRACTUS_RUN": str(folder),
                     "TRACTUS_CERTIFICATE": str(certificate_folder / "server.pem"), "TRACTUS_KEY": str(certificate_folder / "server.key")}
         rendered = subprocess.run([ROOT / "deploy/large/render"], env=os.environ | settings, capture_output=True, check=True).stdout
         if os.geteuid() == 0:  # the workers of nginx are another user's; the scratch folder is root's alone

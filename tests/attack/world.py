@@ -63,7 +63,7 @@ class World:
         flags = {"plain": ["--plain"], "tls": []}.get(self.front) or ([] if self.front == "tls" else setup.proxy_options())
         self.server = Server(setup.binary, self.data, [*flags, *options], setup.environment)
         self.server.start()
-        self.proxy = Proxy(self.folder / "nginx", self.server.port, self.data / "tls") if self.front == "nginx" else None
+        self.proxy = Proxy(self.folder / "nginx", [self.server.port], self.data / "tls") if self.front == "nginx" else None
         encrypted = self.front in ("tls", "nginx")
         authority = str(self.data / "tls/authority.pem") if encrypted else None
         self.target = Target(self.proxy.port if self.proxy else self.server.port, authority)

@@ -24,11 +24,11 @@ core::Result<void> set_state(Writing& tx, const Job& job, const char* state,
 }  // namespace
 
 core::Result<void> queue_job(Writing& tx, JobKind kind, const std::string& subject,
-                             std::int64_t now_utc_us) {
+                             std::int64_t now_utc_us, const std::string& traceparent) {
   TRY(tx.query(
-      "insert into jobs (id, kind, subject, state, attempts, error, queued_utc_us, changed_utc_us) "
-      "values (?, ?, ?, 'queued', 0, '', ?, ?)",
-      {core::new_id(), name_value(kind), subject, now_utc_us, now_utc_us}));
+      "insert into jobs (id, kind, subject, state, attempts, error, queued_utc_us, changed_utc_us, "
+      "traceparent) values (?, ?, ?, 'queued', 0, '', ?, ?, ?)",
+      {core::new_id(), name_value(kind), subject, now_utc_us, now_utc_us, traceparent}));
   return notify(tx, kJobsChannel, std::string(core::name(kind)));
 }
 
@@ -42,12 +42,12 @@ core::Result<std::optional<Job>> claim_job(Writing& tx, const std::vector<JobKin
       "lease_until_utc_us = ?, changed_utc_us = ? "
       "where id = (select id from jobs where state = 'queued' and ? like '%,' || kind || ',%' "
       "order by queued_utc_us, id limit 1 /*pg: for update skip locked */) "
-      "returning id, kind, subject, attempts",
+      "returning id, kind, subject, attempts, traceparent",
       {worker.id, now_utc_us + worker.lease_us, now_utc_us, listed}));
   if (rows.empty()) return std::optional<Job>();
   const Row& row = rows.front();
   const auto kind = TRY(row.word<JobKind>(1, "jobs.kind"));
-  return std::optional(Job{row.text(0), kind, row.text(2), row.count(3), worker.id});
+  return std::optional(Job{row.text(0), kind, row.text(2), row.count(3), worker.id, row.text(4)});
 }
 
 core::Result<std::vector<std::string>> renew_claims(Writing& tx, const Worker& worker,

@@ -41,9 +41,10 @@ constexpr auto words(WorkState) {
 struct Job {
   std::string id;
   JobKind kind = JobKind::metrics;
-  std::string subject;         ///< the trial's or the run's id
-  std::uint64_t attempts = 0;  ///< number of attempts, including the current one
-  std::string owner = {};      ///< worker that claimed it
+  std::string subject;           ///< the trial's or the run's id
+  std::uint64_t attempts = 0;    ///< number of attempts, including the current one
+  std::string owner = {};        ///< worker that claimed it
+  std::string traceparent = {};  ///< of the request that queued it; empty: none
 };
 
 /// A worker that claims jobs, and the length of its leases.
@@ -56,7 +57,7 @@ struct Worker {
 inline constexpr const char* kJobsChannel = "jobs";
 
 core::Result<void> queue_job(Writing& tx, JobKind kind, const std::string& subject,
-                             std::int64_t now_utc_us);
+                             std::int64_t now_utc_us, const std::string& traceparent = {});
 /// Claims the oldest queued job of one of these kinds; none if no such job is queued. Also correct
 /// in Store::write_beside: workers do not wait for each other, and no job is claimed twice.
 core::Result<std::optional<Job>> claim_job(Writing& tx, const std::vector<JobKind>& kinds,

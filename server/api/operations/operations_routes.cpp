@@ -4,6 +4,7 @@
 #include "server/api/route.hpp"
 #include "server/api/schema.hpp"
 #include "server/api/trials/uploads.hpp"
+#include "tracing/tracer.hpp"
 
 namespace tractus {
 namespace api {
@@ -58,6 +59,13 @@ core::Result<http::Response> metrics_text(const Call& call) {
   }));
   out += Telemetry::gauge("tractus_disk_free_bytes", "Free bytes on the disk of the data folder.",
                           static_cast<double>(free_bytes(call.backend)));
+  const auto spans =
+      call.backend.tracer ? call.backend.tracer->counts() : tracing::Tracer::Counts{};
+  out +=
+      Telemetry::counter("tractus_spans_sent_total", "Spans that the collector took.", spans.sent);
+  out += Telemetry::counter("tractus_spans_dropped_total",
+                            "Spans dropped: the queue was full, or the collector refused them.",
+                            spans.dropped);
   http::Response response{.status = 200, .headers = {}, .body = std::move(out)};
   response.with("Content-Type", "text/plain; version=0.0.4").with("Cache-Control", "no-store");
   return response;

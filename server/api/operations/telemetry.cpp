@@ -52,4 +52,9 @@ std::string Telemetry::gauge(const std::string& name, const std::string& help, d
   return fmt::format("# HELP {0} {1}\n# TYPE {0} gauge\n{0} {2}\n", name, help, value);
 }
 
+std::string Telemetry::counter(const std::string& name, const std::string& help,
+                               std::uint64_t value) {
+  return fmt::format("# HELP {0} {1}\n# TYPE {0} counter\n{0} {2}\n", name, help, value);
+}
+
 }  // namespace tractus::api

@@ -21,6 +21,7 @@ class Telemetry {
   /// The lines of counters and histograms; the caller adds gauges with `gauge`.
   std::string text() const;
   static std::string gauge(const std::string& name, const std::string& help, double value);
+  static std::string counter(const std::string& name, const std::string& help, std::uint64_t value);
 
  private:
   struct Route {

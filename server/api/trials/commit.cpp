@@ -147,7 +147,7 @@ core::Result<store::TrialRecord> checked_trial(Backend& backend, const store::Up
 }
 
 core::Result<void> store_trial(Backend& backend, const store::Upload& upload,
-                               const store::TrialRecord& trial) {
+                               const store::TrialRecord& trial, const std::string& traceparent) {
   if (auto linked =
           backend.objects.link_in(backend.partials.path_of(upload.trial_id), upload.sha256);
       !linked)
@@ -161,7 +161,7 @@ core::Result<void> store_trial(Backend& backend, const store::Upload& upload,
     auto station = TRY(store::station_name(tx, upload.station_id));
     TRY(store::record_for_slot(tx, upload.trial_id, trial.complete, {station, now},
                                tool_of(trial)));
-    return store::queue_job(tx, store::JobKind::metrics, upload.trial_id, now);
+    return store::queue_job(tx, store::JobKind::metrics, upload.trial_id, now, traceparent);
   });
 }
 

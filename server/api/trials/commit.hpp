@@ -13,8 +13,8 @@ namespace tractus::api {
 core::Result<store::TrialRecord> checked_trial(Backend& backend, const store::Upload& upload);
 
 /// Moves the file to the objects, then in one transaction adds object, trial and job and completes
-/// the upload.
+/// the upload. @param traceparent  of the job; empty: none
 core::Result<void> store_trial(Backend& backend, const store::Upload& upload,
-                               const store::TrialRecord& trial);
+                               const store::TrialRecord& trial, const std::string& traceparent);
 
 }  // namespace tractus::api

@@ -202,7 +202,8 @@ core::Result<Appended> append_upload(Backend& backend, const Caller& station,
 }
 
 core::Result<wire::UploadState> commit_upload(Backend& backend, const Caller& station,
-                                              const std::string& trial_id) {
+                                              const std::string& trial_id,
+                                              const std::string& traceparent) {
   TRY(own_upload(backend, station, trial_id));
   const auto held = TRY(hold_upload(backend, trial_id));
   auto upload = TRY(own_upload(backend, station, trial_id));
@@ -220,7 +221,7 @@ core::Result<wire::UploadState> commit_upload(Backend& backend, const Caller& st
     backend.partials.remove(trial_id);  // it begins again
     return trial.error();
   }
-  TRY(store_trial(backend, upload, *trial));
+  TRY(store_trial(backend, upload, *trial, traceparent));
   backend.partials.remove(trial_id);
   backend.work_waits();
   return wire::UploadState{upload.size_bytes, store::UploadPhase::complete};

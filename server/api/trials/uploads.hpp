@@ -37,8 +37,10 @@ core::Result<Appended> append_upload(Backend& backend, const Caller& station,
 /// then stores the trial, its file and the job that scores it atomically. A second call has no
 /// effect. Errors: conflict (bytes are missing), corrupt or bad_input (not the announced file, or
 /// not a complete trial: the upload then starts again at 0).
+/// @param traceparent  of the job; empty: none
 core::Result<wire::UploadState> commit_upload(Backend& backend, const Caller& station,
-                                              const std::string& trial_id);
+                                              const std::string& trial_id,
+                                              const std::string& traceparent = {});
 
 /// Free bytes on the disk on which trials are stored.
 std::uint64_t free_bytes(const Backend& backend);

@@ -6,23 +6,26 @@
 #include "server/api/backend.hpp"
 #include "server/api/schema.hpp"
 #include "server/api/trials/uploads.hpp"
+#include "tracing/tracer.hpp"
 
 namespace tractus {
 namespace api {
 namespace {
+
+constexpr const char* kUploadPath = "/api/v1/uploads/{trial_id}";
 
 core::Result<http::Response> as_response(const core::Result<wire::UploadState>& state) {
   if (!state) return state.error();
   return json_response(state->to_json());
 }
 
-core::Result<http::Response> announce(const Call& call) {
+core::Result<http::Response> announce(const Call& call, const tracing::Span&) {
   auto json = TRY(core::parse_json(call.request.body, "body"));
   auto announced = TRY(wire::UploadAnnouncement::from_json(json, "body"));
   return as_response(announce_upload(call.backend, call.caller, call.text("trial_id"), announced));
 }
 
-core::Result<http::Response> state(const Call& call) {
+core::Result<http::Response> state(const Call& call, const tracing::Span&) {
   return as_response(upload_state(call.backend, call.caller, call.text("trial_id")));
 }
 
@@ -34,7 +37,7 @@ core::Result<std::uint32_t> checksum(const std::string& text) {
   return value;
 }
 
-core::Result<http::Response> append(const Call& call) {
+core::Result<http::Response> append(const Call& call, const tracing::Span&) {
   auto crc32c = TRY(checksum(call.text("X-Crc32c")));
   auto appended = TRY(append_upload(call.backend, call.caller, call.text("trial_id"),
                                     static_cast<std::uint64_t>(call.integer("offset_bytes")),
@@ -58,19 +61,38 @@ core::Result<std::optional<store::TrialClock>> clock_of(const std::string& body)
   return std::optional(clock);
 }
 
-core::Result<http::Response> commit(const Call& call) {
+core::Result<http::Response> commit(const Call& call, const tracing::Span& span) {
   auto clock = TRY(clock_of(call.request.body));
   const std::string& id = call.text("trial_id");
-  auto state = commit_upload(call.backend, call.caller, id);
+  auto state = commit_upload(call.backend, call.caller, id, span.traceparent());
   if (!state || !clock) return as_response(state);
   TRY(call.backend.store.write(
       [&](store::Writing& tx) { return store::add_trial_clock(tx, id, *clock); }));
   return as_response(state);
 }
 
+/// A step of an upload as a span, whose parent is the station's request. Only a station that may
+/// call the route comes here: nobody else's traceparent is believed.
+template <core::Result<http::Response> (*step)(const Call&, const tracing::Span&)>
+core::Result<http::Response> traced(const Call& call) {
+  const http::Request& request = call.request;
+  const std::string path =
+      request.path.ends_with("/commit") ? kUploadPath + std::string("/commit") : kUploadPath;
+  tracing::Span span(call.backend.tracer, request.method + " " + path, tracing::SpanKind::server,
+                     tracing::parse_traceparent(request.header("traceparent")));
+  auto answer = step(call, span);
+  const int status = answer ? answer->status : status_of(answer.error().code);
+  span.set("http.request.method", request.method);
+  span.set("http.route", path);
+  span.set("http.request.body.size", request.body.size());
+  span.set("http.response.status_code", status);
+  if (status >= 500) span.set_failed(std::to_string(status));
+  return answer;
+}
+
 RouteInfo upload_route(std::string method, std::string tail, std::string id, std::string summary) {
   return {.method = std::move(method),
-          .path = "/api/v1/uploads/{trial_id}" + tail,
+          .path = kUploadPath + tail,
           .id = std::move(id),
           .summary = std::move(summary),
           .who = {Role::station},
@@ -103,10 +125,10 @@ std::vector<RouteInfo> uploads_routes() {
                         schema::integer("B", "Number of bytes that the server has stored durably")},
                        {"state", schema::one_of<trial::UploadPhase>(
                                      "State of the upload; complete: the trial is stored")}})}};
-  put.handle = announce;
+  put.handle = traced<announce>;
 
   RouteInfo read = upload_route("GET", "", "uploadState", "Read the state of an upload");
-  read.handle = state;
+  read.handle = traced<state>;
 
   RouteInfo patch = upload_route("PATCH", "", "appendUpload",
                                  "Upload the next chunk, at most 4 MiB; answers 409 with "
@@ -128,7 +150,7 @@ std::vector<RouteInfo> uploads_routes() {
   patch.body = kBytes;
   patch.body_limit_bytes = wire::kMaxChunk_bytes;
   patch.audited = false;  // announcing and committing are
-  patch.handle = append;
+  patch.handle = traced<append>;
 
   RouteInfo post = upload_route("POST", "/commit", "commitUpload",
                                 "Commit an upload: the server checks the whole file and stores it "
@@ -142,7 +164,7 @@ std::vector<RouteInfo> uploads_routes() {
              schema::number("s", "Server's clock minus the station's clock, in seconds")},
             {"clock_error_s",
              schema::number("s", "Bound of the error of clock_offset_s, in seconds")}})}};
-  post.handle = commit;
+  post.handle = traced<commit>;
   return {put, read, patch, post};
 }
 
