@@ -32,6 +32,8 @@ Child spawn(const std::vector<std::string>& words, const fs::path& log) {
   posix_spawn_file_actions_adddup2(&actions, ends[1], STDOUT_FILENO);
   posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, log.c_str(),
                                    O_WRONLY | O_CREAT | O_APPEND, 0644);
+  // Stations' sockets would stay open in it, closed by the station or not.
+  posix_spawn_file_actions_addclosefrom_np(&actions, STDERR_FILENO + 1);
   Child out{.pid = -1, .output = ends[0]};
   ::posix_spawnp(&out.pid, argv.front(), &actions, nullptr, argv.data(), environ);
   posix_spawn_file_actions_destroy(&actions);
