@@ -24,6 +24,7 @@
 #include "server/api/volumes/pacs_imports.hpp"
 #include "server/app/anchoring.hpp"
 #include "server/app/backups.hpp"
+#include "server/app/descriptors.hpp"
 #include "server/app/freed_memory.hpp"
 #include "server/app/import_process.hpp"
 #include "server/app/leaving.hpp"
@@ -254,6 +255,7 @@ core::Result<void> serve(const ServeOptions& given) {
   const auto space = std::make_shared<http::ScratchSpace>(scratch.path);
   ServeOptions options = secure;
   options.http.scratch = space.get();
+  options.http.max_connections = connections_within_limit(options.http.max_connections);
   if (options.web && !std::filesystem::is_regular_file(*options.web / "index.html"))
     return core::Error{
         core::Errc::not_found,

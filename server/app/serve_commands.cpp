@@ -47,6 +47,13 @@ Run serve_command(CLI::App& command) {
   command.add_option("--backups", options->backups,
                      "Folder for backups that people make on the web pages (default: folder "
                      "backups in the data folder)");
+  const auto connections = std::make_shared<int>(4096);
+  command
+      .add_option("--max-connections", *connections,
+                  "Largest number of open connections; WebSockets, such as the live connections of "
+                  "stations and pages, get at most seven eighths of them")
+      ->check(CLI::Range(16, 100'000))
+      ->capture_default_str();
   const auto lease_s = std::make_shared<double>(30.0);
   command
       .add_option("--job-lease-seconds", *lease_s,
@@ -123,6 +130,7 @@ Run serve_command(CLI::App& command) {
     }
     options->http.address = address.first;
     options->http.port = address.second;
+    options->http.max_connections = *connections;
     options->http.header_time = std::chrono::milliseconds(std::lround(*header_s * 1000));
     options->objects_cache_bytes = static_cast<std::uint64_t>(*cache_GiB * double(1u << 30));
     options->job_lease = std::chrono::milliseconds(std::lround(*lease_s * 1000));

@@ -3,6 +3,7 @@
 //
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <atomic>
 #include <boost/asio/co_spawn.hpp>
 #include <boost/asio/detached.hpp>
@@ -50,10 +51,10 @@ struct Queue {
   net::thread_pool threads;
 };
 
-Response too_many_at_once() {
-  auto response =
-      error_response(503, "unavailable", "too many requests at the same time: try again in 2 s");
-  return response.with("Retry-After", "2"), response;
+Response too_many(const std::string& what, int wait_s) {
+  auto response = error_response(503, "unavailable",
+                                 fmt::format("too many {}: try again in {} s", what, wait_s));
+  return response.with("Retry-After", std::to_string(wait_s)), response;
 }
 
 /// What a refused or broken request is answered, or nothing when there is nobody to answer.
@@ -104,6 +105,8 @@ struct Server::State {
   net::awaitable<bool> converse(Connection& connection, const Parser& parser,
                                 const RequestHead& head);
   bool make_room();
+  /// Whether another WebSocket leaves enough connections for requests.
+  bool may_talk() const;
   net::awaitable<std::optional<Response>> read_body(Connection& connection, Parser& parser,
                                                     const RequestHead& head, SpooledFile& spooled);
   net::awaitable<bool> write(Connection& connection, const RequestHead& head, Response& response,
@@ -162,6 +165,11 @@ bool Server::State::make_room() {
   error_code ignored;
   longest->stream.socket().close(ignored);
   return true;
+}
+
+bool Server::State::may_talk() const {
+  const auto talking = std::ranges::count(connections, true, &Connection::talking);
+  return talking < options.max_connections - options.max_connections / 8;
 }
 
 net::awaitable<void> Server::State::serve(std::list<Connection>::iterator connection) {
@@ -263,7 +271,8 @@ net::awaitable<Response> Server::State::handle(const Request& request) {
 net::awaitable<Response> Server::State::handle_queued(Queue& queue, const Request& request) {
   Ranked ranked = co_await on_workers(workers, Ranking{&service, &request});
   if (auto* refusal = std::get_if<Response>(&ranked)) co_return std::move(*refusal);
-  if (!queue.has_room(std::get<Standing>(ranked))) co_return too_many_at_once();
+  if (!queue.has_room(std::get<Standing>(ranked)))
+    co_return too_many("requests at the same time", 2);
   ++queue.taken;
   Response response = co_await on_workers(queue.threads, Handling{&service, &request});
   --queue.taken;
@@ -279,6 +288,11 @@ net::awaitable<bool> Server::State::converse(Connection& c, const Parser& parser
     co_return false;
   }
   if (c.buffer.size() > 0 || draining) co_return false;  // it spoke before it was let in
+  if (!may_talk()) {
+    Response full = too_many("open WebSockets", 10);
+    co_await refuse(c, head, full);
+    co_return false;
+  }
   c.idle = c.talking = true;
   co_await hold_conversation(c.stream, parser.get(),
                              std::move(std::get<std::shared_ptr<WebSocketHandler>>(opened)),

@@ -29,7 +29,8 @@ struct ServerOptions {
   LaneLimits hashing = hashing_limits();
   LaneLimits remote{.threads = 4, .waiting_strangers = 8, .waiting = 32};
   LaneLimits computing{.threads = 2, .waiting_strangers = 4, .waiting = 16};
-  int max_connections = 512;  ///< a further one closes the longest idle connection
+  int max_connections = 512;  ///< a further one closes the longest idle connection; WebSockets
+                              ///< get at most seven eighths of them, so that requests have room
   std::uint32_t max_header_bytes = 16 * 1024;
   std::chrono::milliseconds header_time{
       10'000};  ///< from a request's first byte to the end of its head

@@ -320,6 +320,32 @@ TEST_F(Live, AReportIsInTheFleetsListOnceHoweverOftenItCame) {
   EXPECT_EQ(client_.ask("POST", "/api/v1/station/report", headers, bad.dump()).status, 400);
 }
 
+/// Of 16 connections WebSockets get 14: the two that are left answer requests.
+TEST(LiveConnections, LeaveRoomForRequests) {
+  const ServedWorld world;
+  const ServerProcess server(world.data, {"--max-connections", "16"});
+  Client client;
+  client.speak_to(server.port());
+  const Headers page = from_our_page(world.admin(client), server.port());
+  std::vector<std::unique_ptr<WebSocket>> open;
+  const auto connect = [&](const std::string& path, const Headers& headers) {
+    open.push_back(std::make_unique<WebSocket>(server.port(), path, headers));
+    return open.back()->status();
+  };
+  ASSERT_EQ(connect("/api/v1/live/station", world.station_2), 101);
+  for (int i = 0; i < 12; ++i) ASSERT_EQ(connect("/api/v1/live", page), 101) << i;
+  ASSERT_EQ(connect("/api/v1/live/station", world.station_1), 101);
+  EXPECT_EQ(WebSocket(server.port(), "/api/v1/live/station", world.station_2).status(), 503);
+  for (int i = 0; i < 5; ++i)
+    EXPECT_EQ(client.ask("GET", "/api/v1/session", page).status, 200) << i;
+  open.pop_back();
+  int status = 503;
+  for (const auto until = WebSocket::now_ms() + 10'000;
+       status != 101 && WebSocket::now_ms() < until;)
+    status = WebSocket(server.port(), "/api/v1/live/station", world.station_1).status();
+  EXPECT_EQ(status, 101) << "a connection that ended makes room for another";
+}
+
 /// By libcurl and Beast, as stations do, with the house's own authority.
 TEST(LiveOverTls, AStationsLineWorksAndATamperedAuthorityOpensNone) {
   const ServedWorld world;
