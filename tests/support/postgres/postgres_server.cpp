@@ -100,7 +100,8 @@ fs::path place_of(Durable durable) {
 
 PostgresServer::PostgresServer(Durable durable)
     : programs_(newest_programs()),
-      folder_(place_of(durable) / ("tractus-pg-" + core::new_id().substr(0, 12))) {
+      // The random end of an id: its beginning is the millisecond, in which two tests can begin.
+      folder_(place_of(durable) / ("tractus-pg-" + core::new_id().substr(20))) {
   sweep(folder_.parent_path());
   fs::create_directories(folder_);
   if (::geteuid() == 0) {
