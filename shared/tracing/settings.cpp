@@ -1,11 +1,13 @@
 #include "tracing/settings.hpp"
 
-#include <fmt/format.h>
+#include <curl/curl.h>
 
 #include <algorithm>
 #include <charconv>
 #include <cstdlib>
+#include <memory>
 
+#include "core/trim.hpp"
 #include "core/try.hpp"
 
 namespace tractus {
@@ -23,27 +25,17 @@ bool is_printable(std::string_view text) {
   return std::ranges::all_of(text, [](char c) { return c >= 32 && c < 127; });
 }
 
-std::string_view without_spaces(std::string_view text) {
-  while (!text.empty() && text.front() == ' ') text.remove_prefix(1);
-  while (!text.empty() && text.back() == ' ') text.remove_suffix(1);
-  return text;
-}
+struct FreesText {
+  void operator()(char* text) const { curl_free(text); }
+};
 
-/// "%20" is a space; any other % stays.
+/// "%20" is a space; a % without two digits stays.
 std::string unescaped(std::string_view text) {
-  std::string out;
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    int value = 0;
-    const char* digits = text.data() + i + 1;
-    if (text[i] == '%' && i + 2 < text.size() &&
-        std::from_chars(digits, digits + 2, value, 16).ptr == digits + 2) {
-      out += static_cast<char>(value);
-      i += 2;
-    } else {
-      out += text[i];
-    }
-  }
-  return out;
+  if (text.empty()) return {};  // libcurl would look for the end itself
+  int size = 0;
+  const std::unique_ptr<char, FreesText> out(
+      curl_easy_unescape(nullptr, text.data(), static_cast<int>(text.size()), &size));
+  return out ? std::string(out.get(), static_cast<std::size_t>(size)) : std::string();
 }
 
 /// "key=value,key=value", the values percent-encoded.
@@ -52,14 +44,14 @@ core::Result<Pairs> pairs_in(const std::string& name, const std::string& text) {
   std::string_view rest = text;
   while (!rest.empty()) {
     const auto comma = std::min(rest.find(','), rest.size());
-    const std::string_view one = without_spaces(rest.substr(0, comma));
+    const std::string_view one = core::trimmed(rest.substr(0, comma));
     rest.remove_prefix(std::min(comma + 1, rest.size()));
     if (one.empty()) continue;
     const auto equals = one.find('=');
-    const auto key = without_spaces(one.substr(0, equals));
+    const auto key = core::trimmed(one.substr(0, equals));
     if (equals == std::string_view::npos || key.empty() || out.size() == kMostPairs)
       return wrong_variable(name, "at most 32 KEY=VALUE are expected, separated by commas");
-    out.emplace_back(key, unescaped(without_spaces(one.substr(equals + 1))));
+    out.emplace_back(key, unescaped(core::trimmed(one.substr(equals + 1))));
     if (out.back().second.size() > kMostText_bytes || !is_printable(out.back().first) ||
         !is_printable(out.back().second))
       return wrong_variable(name, "a value is too long, or has characters other than ASCII");

@@ -89,7 +89,7 @@ TEST(TraceSettings, AreOffUnlessAnEndpointIsNamed) {
 TEST(TraceSettings, FollowTheSpecification) {
   const auto settings = read_settings(
       of({{"OTEL_EXPORTER_OTLP_ENDPOINT", "http://collector:4318/mycollector/"},
-          {"OTEL_EXPORTER_OTLP_HEADERS", "api-key=a%20key, second=2"},
+          {"OTEL_EXPORTER_OTLP_HEADERS", "api-key=a%20key, second=2,\tthird=50%-1"},
           {"OTEL_EXPORTER_OTLP_TIMEOUT", "1500"},
           {"OTEL_RESOURCE_ATTRIBUTES", "deployment.environment.name=lab,service.name=other"},
           {"OTEL_SERVICE_NAME", "station-3"}}),
@@ -98,7 +98,8 @@ TEST(TraceSettings, FollowTheSpecification) {
   const Settings& one = **settings;
   using Pairs = std::vector<std::pair<std::string, std::string>>;
   EXPECT_EQ(one.url, "http://collector:4318/mycollector/v1/traces");
-  EXPECT_EQ(one.headers, (Pairs{{"api-key", "a key"}, {"second", "2"}}));
+  // A % is an escape before two hexadecimal digits alone [RFC 3986, 2.1].
+  EXPECT_EQ(one.headers, (Pairs{{"api-key", "a key"}, {"second", "2"}, {"third", "50%-1"}}));
   EXPECT_EQ(one.timeout, 1500ms);
   EXPECT_EQ(one.resource,
             (Pairs{{"deployment.environment.name", "lab"}, {"service.name", "station-3"}}));
