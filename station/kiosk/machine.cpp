@@ -79,6 +79,7 @@ core::Json Machine::to_json() const {
   if (work_ && work_->trial) out["work"] = json_of(*work_);
   if (!technician_pin_.empty()) out["technician"] = true;
   if (study_) out["study"] = true;
+  if (screen_ == Screen::badge && !notice_.empty()) out["refused_badge"] = badge_;
   if (!language_.empty()) out["language"] = language_;
   if (screen_ == Screen::work) out["button"] = button_;
   if (screen_ == Screen::paused) out["in_trial"] = pauses_trial();

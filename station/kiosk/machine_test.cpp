@@ -144,6 +144,7 @@ TEST_F(KioskMachine, AParticipantOfAStudyHasAPseudonymAndNoPin) {
   machine_.sign_in_refused("No participant", now_);
   EXPECT_EQ(machine_.screen(), Screen::badge);
   EXPECT_EQ(machine_.to_json()["notice"], "No participant");
+  EXPECT_EQ(machine_.to_json()["refused_badge"], "P01") << "the page says which number it was";
   expect_refused(command(Kind::pin, "2468"));
 }
 

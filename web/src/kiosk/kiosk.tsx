@@ -13,7 +13,7 @@ import styles from './kiosk.module.css';
 function Screen({ state, send }: { readonly state: State; readonly send: Send }) {
   switch (state.screen) {
     case 'badge':
-      return <BadgeScreen study={state.study} notice={state.notice} technician={state.technician} send={send} />;
+      return <BadgeScreen {...state} send={send} />;
     case 'pin':
       return <PinScreen title={say('Type your PIN')} notice={state.notice} send={send} />;
     case 'technician_pin':

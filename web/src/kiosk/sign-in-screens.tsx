@@ -41,11 +41,13 @@ function Pad({ onDigit, onDelete, onEnter, ready, enter }: PadProps) {
 interface BadgeProps {
   readonly study: boolean;
   readonly notice: string;
+  /** The number that `notice` is about. */
+  readonly refused_badge: string;
   readonly technician: boolean;
   readonly send: Send;
 }
 
-export function BadgeScreen({ study, notice, technician, send }: BadgeProps) {
+export function BadgeScreen({ study, notice, refused_badge, technician, send }: BadgeProps) {
   const [badge, setBadge, give] = useBadge(send);
   const add = (digit: string) => setBadge((text) => text + digit);
   return (
@@ -57,7 +59,11 @@ export function BadgeScreen({ study, notice, technician, send }: BadgeProps) {
             ? say('It stands on the sheet that you were given for this study.')
             : say('Hold the badge to the scanner, or type its number.')}
         </p>
-        {notice === '' ? null : <p role="alert">{notice}</p>}
+        {notice === '' ? null : (
+          <p role="alert">
+            {refused_badge}: {say(notice)}
+          </p>
+        )}
         <output className={styles.typed} aria-label={study ? say('Participant number') : say('Badge number')}>
           {badge === '' ? ' ' : badge}
         </output>

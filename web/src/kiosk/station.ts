@@ -95,6 +95,7 @@ const State = v.object({
   in_trial: v.optional(v.boolean(), false),
   technician: v.optional(v.boolean(), false),
   study: v.optional(v.boolean(), false),
+  refused_badge: v.optional(v.string(), ''),
   /** That the person at the station chose on the account. */
   language: v.optional(v.string()),
   findings: v.optional(v.array(Finding), []),

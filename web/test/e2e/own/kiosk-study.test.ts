@@ -78,10 +78,10 @@ describe.skipIf(bin === '')('a blind study at the kiosk', () => {
     await person.says('Type your participant number');
     await look(person, 'number');
     await person.scan('P99');
-    await person.says('No participant of this study has that number.');
+    await person.says('P99: No participant of this study has that number.');
     await look(person, 'unknown');
     await person.scan('100'); // the badge of a trainee
-    await person.says('No participant of this study has that number.');
+    await person.says('100: No participant of this study has that number.');
     await person.scan(kPerson);
     await person.fault('work'); // a simulated rig would record a simulated surgeon in a person's name
     await person.touch('Sign in');
