@@ -17,7 +17,7 @@ namespace tractus {
 namespace assessment {
 namespace {
 
-constexpr std::uint64_t kLargest = 512ull << 20;
+constexpr std::uint64_t kLargestTable_bytes = 512ull << 20;
 
 std::string no_column(const std::string& file, const std::string& column,
                       const std::vector<std::string_view>& header) {
@@ -77,7 +77,7 @@ core::Result<void> Table::read_header(const std::vector<std::string_view>& heade
 
 core::Result<Table> Table::read(const std::filesystem::path& path,
                                 std::span<const std::string> columns, Missing missing) {
-  auto bytes = TRY(core::read_file(path, kLargest));
+  auto bytes = TRY(core::read_file(path, kLargestTable_bytes));
   return parse(std::move(bytes), path.string(), columns, missing);
 }
 

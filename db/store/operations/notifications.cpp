@@ -14,7 +14,7 @@ namespace tractus {
 namespace store {
 namespace {
 
-constexpr std::int64_t kDay_us = 24ll * 3600 * 1'000'000;
+constexpr std::int64_t kDayOfNotices_us = 24ll * 3600 * 1'000'000;
 
 std::string kinds_text(const std::vector<NotificationKind>& kinds) {
   std::vector<std::string_view> out;
@@ -49,8 +49,8 @@ struct DueRange {
   std::int64_t after_us, until_us;
 };
 std::vector<DueRange> due_ranges(std::int64_t now_utc_us) {
-  return {{NotificationKind::due, now_utc_us, now_utc_us + kDay_us},
-          {NotificationKind::overdue, now_utc_us - 7 * kDay_us, now_utc_us}};
+  return {{NotificationKind::due, now_utc_us, now_utc_us + kDayOfNotices_us},
+          {NotificationKind::overdue, now_utc_us - 7 * kDayOfNotices_us, now_utc_us}};
 }
 std::string prefix_of(NotificationKind kind) { return std::string(name(kind)) + "/"; }
 

@@ -16,8 +16,8 @@ using core::Json;
 using core::Result;
 
 constexpr const char* kRetentionFormat = "tractus-retention/1";
-constexpr std::int64_t kDay_us = 86'400'000'000;
-constexpr std::int64_t kYear_us = 365 * kDay_us + kDay_us / 4;
+constexpr std::int64_t kDayOfRetention_us = 86'400'000'000;
+constexpr std::int64_t kYear_us = 365 * kDayOfRetention_us + kDayOfRetention_us / 4;
 constexpr std::int64_t kMonth_us = kYear_us / 12;
 
 Result<RetentionVersion> version_from(const Row& row) {
@@ -56,7 +56,8 @@ Result<Plan> plan_of(Reading& tx, const RetentionVersion& of, std::int64_t now_u
   const auto noticed = TRY(tx.query("select account_id from retention_notices"));
   for (const Row& row : noticed)
     if (std::ranges::find(inactive, row.text(0)) == inactive.end()) out.back.push_back(row.text(0));
-  if (!of.rules.sign_ins_months || now_utc_us < of.made_utc_us + of.rules.notice_days * kDay_us)
+  if (!of.rules.sign_ins_months ||
+      now_utc_us < of.made_utc_us + of.rules.notice_days * kDayOfRetention_us)
     return out;
   out.sign_ins = TRY(old_sign_ins(tx, sign_ins_before(of.rules, now_utc_us))) > 0;
   return out;
@@ -83,7 +84,7 @@ Result<void> keep_notices(Store& store, const Plan& plan, const RetentionVersion
       TRY(tx.query(
           "insert into retention_notices (account_id, version, noticed_utc_us, acts_utc_us) "
           "values (?, ?, ?, ?)",
-          {id, of.version, now_utc_us, now_utc_us + of.rules.notice_days * kDay_us}));
+          {id, of.version, now_utc_us, now_utc_us + of.rules.notice_days * kDayOfRetention_us}));
     return {};
   });
 }
