@@ -2,17 +2,23 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <functional>
+#include <iterator>
+#include <map>
 
 namespace tractus {
 namespace lab {
 namespace {
 
-/// Of one run in a whole channel that noise alone would leave alike. Prior.
-constexpr double kChance = 1e-3;
 /// Noise below this share of a usual step between neighbours is not visible. Prior.
 constexpr double kVisible = 0.01;
-/// Fewer samples do not say how often neighbours are alike. Bound.
-constexpr std::size_t kFewest = 100;
+/// Fewer samples at an extreme value may be chance. Prior.
+constexpr std::size_t kFewest = 8;
+/// Times the samples of the next values inwards. A smooth peak without noise has 1. Prior.
+constexpr std::size_t kPile = 2;
+/// So many next values are looked at.
+constexpr std::size_t kNeighbours = 3;
 
 double usual_step(std::span<const double> y) {
   std::vector<double> steps;
@@ -24,25 +30,41 @@ double usual_step(std::span<const double> y) {
   return *middle;
 }
 
+/// The first value of `counts` if samples pile up at it.
+template <typename Counts>
+std::optional<double> end_of(const Counts& counts) {
+  if (counts.size() <= kNeighbours) return std::nullopt;
+  auto at = counts.begin();
+  const auto [extreme, samples] = *at;
+  std::size_t next = 0;
+  for (std::size_t k = 0; k < kNeighbours; ++k) next += (++at)->second;
+  if (samples < kFewest || samples <= kPile * next) return std::nullopt;
+  return extreme;
+}
+
+/// Samples of each of the first values by `Order`, the extreme and its neighbours.
+template <typename Order>
+std::map<double, std::size_t, Order> first_values(
+    std::span<const std::span<const double>> recordings) {
+  std::map<double, std::size_t, Order> counts;
+  for (const auto& recording : recordings)
+    for (const double value : recording) {
+      if (counts.size() > kNeighbours && Order{}(counts.rbegin()->first, value)) continue;
+      ++counts[value];
+      if (counts.size() > kNeighbours + 1) counts.erase(std::prev(counts.end()));
+    }
+  return counts;
+}
+
 }  // namespace
 
-std::vector<char> saturated(std::span<const double> y, double noise_sd) {
-  std::vector<char> out(y.size(), 0);
-  if (y.size() < kFewest || !(noise_sd > kVisible * usual_step(y))) return out;
-  const auto [least, most] = std::ranges::minmax(y);
-  const auto at_end = [&](double value) { return value == least || value == most; };
-  double alike = 0.0, pairs = 0.0;
-  for (std::size_t k = 1; k < y.size(); ++k)
-    if (!at_end(y[k])) ++pairs, alike += y[k] == y[k - 1] ? 1.0 : 0.0;
-  const double chance = (alike + 1.0) / (pairs + 2.0);  // Laplace's rule of succession
-  const double longest = 1.0 + std::log(kChance / double(y.size())) / std::log(chance);
-  for (std::size_t from = 0, to = 0; from < y.size(); from = to) {
-    for (to = from + 1; to < y.size() && y[to] == y[from]; ++to) {
-    }
-    if (at_end(y[from]) && double(to - from) > longest)
-      std::fill(out.begin() + std::ptrdiff_t(from), out.begin() + std::ptrdiff_t(to), 1);
-  }
-  return out;
+bool shows_noise(std::span<const double> recording, double noise_sd) {
+  return noise_sd > kVisible * usual_step(recording);
+}
+
+SensorRange sensor_range(std::span<const std::span<const double>> recordings) {
+  return {.least = end_of(first_values<std::less<>>(recordings)),
+          .most = end_of(first_values<std::greater<>>(recordings))};
 }
 
 }  // namespace lab

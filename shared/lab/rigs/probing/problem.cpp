@@ -226,6 +226,7 @@ Result<std::unique_ptr<Problem>> make_probing_problem(const models::ProbingModel
   for (const std::string& what : wrong)
     if (!what.empty()) return Error{Errc::bad_input, what};
   if (progress && !progress(0.5)) return Error{Errc::cancelled, "stopped"};
+  mark_saturated(recordings);
   Reach reach{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity(),
               !turns};
   for (const auto& r : recordings) {

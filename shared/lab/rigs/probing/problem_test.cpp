@@ -156,7 +156,6 @@ TEST(ProbingProblem, TheEndsOfARecordingAreNotJudged) {
   EXPECT_EQ(judged[5977], Judgement::judged);
 }
 
-/// Jolted once, 3 s after the start: a probe with mass is not judged there, one without is.
 /// Cut off at 0.7 of the largest force, the right model still lacks nothing, and its numbers are found.
 TEST(ProbingProblem, ASensorAtTheEndOfItsRangeIsNotJudged) {
   auto set = set_of([](const Moment&) { return 0.0; });
@@ -180,6 +179,7 @@ TEST(ProbingProblem, ASensorAtTheEndOfItsRangeIsNotJudged) {
             50);
 }
 
+/// Jolted once, 3 s after the start: a probe with mass is not judged there, one without is.
 TEST(ProbingProblem, AHeavyProbeIsNotJudgedWhereItsAccelerationIsNotKnown) {
   constexpr double kLittle = 5.0;  // N·s/m: what is not known of the speed makes no force
   const auto at_the_jolt = [](double mass_kg) {

@@ -315,7 +315,6 @@ Result<ProbingRecording> prepare(trial::ProbingMeasurement&& trial,
   const Noise noise =
       noise_of(out.measured, turns ? stated.tz_Nm : stated.fz_N, noise_sd(out.measured));
   out.noise_sd = noise.sd;
-  out.saturated = saturated(out.measured, noise_sd(out.measured));
   out.decimator = Decimator(spacing_s, kProbingRecording.thin_rate_Hz);
   out.slow_noise_sd =
       std::hypot(noise.sd * std::sqrt(out.decimator.noise_gain()) *
@@ -334,6 +333,18 @@ Result<ProbingRecording> prepare(trial::ProbingMeasurement&& trial,
   out.sd_thin.assign(out.measured_thin.size(), out.slow_noise_sd);
   out.floor = out.noise_sd;
   return out;
+}
+
+void mark_saturated(std::span<ProbingRecording> recordings) {
+  std::vector<std::span<const double>> telling;
+  for (const ProbingRecording& r : recordings)
+    if (shows_noise(r.measured, noise_sd(r.measured))) telling.emplace_back(r.measured);
+  const SensorRange range = sensor_range(telling);
+  for (ProbingRecording& r : recordings) {
+    r.saturated.resize(r.size());
+    std::ranges::transform(r.measured, r.saturated.begin(),
+                           [&](double value) { return range.ends_at(value); });
+  }
 }
 
 namespace {

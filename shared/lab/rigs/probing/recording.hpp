@@ -65,6 +65,9 @@ core::Result<ProbingRecording> prepare(trial::ProbingMeasurement&& trial,
                                        const trial::StatedNoise& stated, bool turns,
                                        std::span<const double> borders_m, const std::string& where);
 
+/// Marks in each recording of a set the samples at which the sensor of `measured` stood at the end of its range.
+void mark_saturated(std::span<ProbingRecording> recordings);
+
 /// Smooths the recorded positions, with breaks where they pass a border of layers: speed and acceleration may
 /// jump there. The moment of passing is where the smoothed motion before it reaches the border.
 /// @param borders_m  of the model.
