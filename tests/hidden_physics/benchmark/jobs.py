@@ -99,13 +99,15 @@ def asked_lab(program: str, folder: pathlib.Path, scratch: pathlib.Path, threads
 
 
 def compared(program, model, folder) -> dict:
-    """What `compare` says of a model on the fresh trials: error and floor of the primary channel, by phase."""
+    """What `compare` says of a model on the fresh trials: error and floor of the primary channel, by phase, and of
+    the other channels the error."""
     out = run_program([program, "compare", "--model", str(model), "--measurements", str(folder / "fresh"), "--json"])
     if "answer" not in out:
         return out
     answer = out["answer"]
     first = answer["channels"][0]
     return {"channel": first["name"], "rmse": first["rmse"], "noise_floor": first["noise_floor"],
+            "other_rmse": [channel["rmse"] for channel in answer["channels"][1:]],
             "phases": [{k: p.get(k) for k in ("phase", "rmse", "share_of_time", "share_of_error", "judged_share")}
                        for p in answer.get("phases", [])],
             "judgements": answer.get("judgements", []), "wall_s": out["wall_s"]}

@@ -150,6 +150,11 @@ def covered_by(effect: dict, true: dict, units: dict) -> list:
     return held
 
 
+def errors_of(compared: dict) -> list:
+    """By channel: an effect about the probe's axis lowers the torque's error alone."""
+    return [compared["rmse"], *compared.get("other_rmse", [])]
+
+
 def useless_steps(steps: list) -> list:
     """The effects whose step did not lower the held-out error."""
     return [after["model"].removeprefix("+ ") for before, after in zip(steps, steps[1:])
@@ -203,8 +208,9 @@ def outcome(truth: dict, reply: dict, catalogue: dict) -> Outcome:
         o.fresh_over_floor = reply["fresh"]["rmse"] / floor
         o.judged_share = next((j["share"] for j in reply["fresh"].get("judgements", []) if j["judgement"] == "judged"),
                               None)
-        base = (reply.get("fresh_base") or {}).get("rmse")
-        if o.named and base is not None and reply["fresh"]["rmse"] >= base:
+        base = reply.get("fresh_base") or {}
+        if o.named and base.get("rmse") is not None and not any(
+                found < given for found, given in zip(errors_of(reply["fresh"]), errors_of(base), strict=True)):
             o.useless += ("fresh trials",)
     right = (reply.get("right_model") or {}).get("fresh") or {}
     if right.get("rmse") is not None and not foreign:

@@ -143,6 +143,10 @@ class Answers(unittest.TestCase):
         self.assertEqual(useless(0.2, 0.2, "inertia"), ("fresh trials",))
         self.assertEqual(useless(0.19, 0.2, "inertia"), ())
         self.assertEqual(useless(0.2, 0.2), ())
+        fresh, base = {"rmse": 0.2, "other_rmse": [0.001]}, {"rmse": 0.2, "other_rmse": [0.004]}
+        self.assertEqual(scored(truth_of(), reply_of("rotary_stiffness", fresh=fresh, fresh_base=base)).useless, ())
+        self.assertEqual(scored(truth_of(), reply_of("rotary_stiffness", fresh=base, fresh_base=fresh)).useless,
+                         ("fresh trials",))
 
     def test_errors_are_counted_in_true_floors(self):
         steps = [{"model": "base", "held_out_rmse": 0.5}, {"model": "+ inertia", "held_out_rmse": 0.12}]
