@@ -1,6 +1,7 @@
 import { Link } from 'wouter';
 import { say, Sentence } from '@/language';
 import { Card } from '@/ui';
+import { Figures } from './figures';
 import styles from './guide.module.css';
 import python from './scripts/trials.py?raw';
 import r from './scripts/trials.R?raw';
@@ -11,6 +12,11 @@ const kExamples = [
   { title: 'Python', code: python },
   { title: 'R', code: r },
 ] as const;
+
+/** Addresses of the notebooks, which the tests run. */
+const kNotebooks = Object.entries(
+  import.meta.glob<string>('../../../../deploy/clients/notebooks/*', { eager: true, query: '?url', import: 'default' }),
+).map(([path, href]) => ({ file: path.slice(path.lastIndexOf('/') + 1), href }));
 
 /** How a person's programs call the server; the examples are files that the tests run. */
 export function ScriptsPage() {
@@ -53,6 +59,24 @@ export function ScriptsPage() {
           </pre>
         </Card>
       ))}
+      <Card title={say('Notebooks')}>
+        <p>
+          <Sentence
+            text="Both read a study’s trials from the server and make its table. They need <code>TRACTUS_URL</code>, <code>TRACTUS_TOKEN</code> and the package for Python or R in <code>deploy/clients</code>."
+            parts={{ code: (words) => <code>{words}</code> }}
+          />
+        </p>
+        <ul>
+          {kNotebooks.map(({ file, href }) => (
+            <li key={file}>
+              <a href={href} download={file}>
+                {file}
+              </a>
+            </li>
+          ))}
+        </ul>
+      </Card>
+      <Figures />
       <p>
         <Sentence
           text="Every route with its fields: <link>description of the API (OpenAPI)</link>"
