@@ -66,7 +66,7 @@ export function ScriptsPage() {
             parts={{ code: (words) => <code>{words}</code> }}
           />
         </p>
-        <ul>
+        <ul className={styles.steps}>
           {kNotebooks.map(({ file, href }) => (
             <li key={file}>
               <a href={href} download={file}>
