@@ -339,11 +339,15 @@ void mark_saturated(std::span<ProbingRecording> recordings) {
   std::vector<std::span<const double>> telling;
   for (const ProbingRecording& r : recordings)
     if (shows_noise(r.measured, noise_sd(r.measured))) telling.emplace_back(r.measured);
-  const SensorRange range = sensor_range(telling);
+  const SensorRange of_all = sensor_range(telling);
   for (ProbingRecording& r : recordings) {
+    const std::span<const double> one(r.measured);
+    const SensorRange own =
+        shows_noise(one, noise_sd(one)) ? sensor_range({&one, 1}) : SensorRange{};
     r.saturated.resize(r.size());
-    std::ranges::transform(r.measured, r.saturated.begin(),
-                           [&](double value) { return range.ends_at(value); });
+    std::ranges::transform(one, r.saturated.begin(), [&](double value) {
+      return of_all.ends_at(value) || own.ends_at(value);
+    });
   }
 }
 

@@ -65,7 +65,8 @@ core::Result<ProbingRecording> prepare(trial::ProbingMeasurement&& trial,
                                        const trial::StatedNoise& stated, bool turns,
                                        std::span<const double> borders_m, const std::string& where);
 
-/// Marks in each recording of a set the samples at which the sensor of `measured` stood at the end of its range.
+/// Marks in each recording of a set the samples at which the sensor of `measured` stood at the end of its range: that of the set,
+/// which few samples of each recording reach, or its own, where the sensor was zeroed before each.
 void mark_saturated(std::span<ProbingRecording> recordings);
 
 /// Smooths the recorded positions, with breaks where they pass a border of layers: speed and acceleration may
