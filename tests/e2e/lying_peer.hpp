@@ -32,6 +32,8 @@ class Peer {
   int true_port() const { return real_->port(); }
   rig::Electronics& electronics() { return *electronics_; }
   std::uint64_t answered() const { return answered_; }
+  /// It has told the truth in every answer so far, and goes on to.
+  bool is_honest() const { return lie_ == Lie::none || answered_ < honest_; }
   /// What the machine's clock said in the last honest answer, s.
   double last_honest_s() const { return last_honest_s_; }
 

@@ -12,6 +12,7 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <map>
 #include <thread>
 
@@ -54,6 +55,24 @@ class ProbingTrial : public testing::Test {
   Ended on_rig(int port, const std::string& duration_s = "20") const {
     return ended(station("--device rig --scenario soft --address 127.0.0.1:" +
                          std::to_string(port) + " --duration " + duration_s));
+  }
+  /// Runs the station on a peer until the computer lets an honest bus answer in time, five times at
+  /// most: where one of them is held up for longer, the station stops the trial, rightly, and all is
+  /// made anew. What the last attempt's runs said.
+  std::vector<Ended> undisturbed(
+      Lie lie, int honest, const std::function<std::vector<Ended>(lying::Peer&)>& attempt) const {
+    std::vector<Ended> runs;
+    for (int k = 0; k < 5; ++k) {
+      fs::remove_all(data_);
+      lying::Peer peer(lie, honest);
+      runs = attempt(peer);
+      const bool held_up = std::ranges::any_of(runs, [](const Ended& run) {
+        return run.said.find("did not answer in time") != std::string::npos ||
+               run.said.find("it does not answer") != std::string::npos;
+      });
+      if (!held_up || !peer.is_honest()) break;
+    }
+    return runs;
   }
   std::vector<trial::Trial> trials() const {
     std::vector<trial::Trial> out;
@@ -129,8 +148,9 @@ class ALyingPeer : public ProbingTrial,
                    public testing::WithParamInterface<std::pair<Lie, const char*>> {};
 
 TEST_P(ALyingPeer, StopsTheTrialWithOneLineAndTheTrialIsKeptAndMarked) {
-  lying::Peer peer(GetParam().first, 700);
-  const Ended run = on_rig(peer.port());
+  const Ended run = undisturbed(GetParam().first, 700, [&](lying::Peer& peer) {
+    return std::vector{on_rig(peer.port())};
+  })[0];
   EXPECT_EQ(run.code, 1) << run.said;
   EXPECT_THAT(run.said, HasSubstr(GetParam().second));
   const auto kept = trials();
@@ -162,27 +182,46 @@ TEST_F(ProbingTrial, APeerThatIsNoRigIsRefusedInOneLineAndNothingIsLeft) {
   EXPECT_TRUE(trials().empty());
 }
 
-TEST_F(ProbingTrial, AfterTheLossOfTheBusTheStageStandsWithinTenMilliseconds) {
-  lying::Peer peer(Lie::silence, 3000);
-  std::jthread station([&] { on_rig(peer.port()); });
+struct Standstill {
+  double after_s = 0.0;      ///< the first reading at rest, after the last honest answer
+  double between_s = 0.0;    ///< from the reading before it
+  double fastest_m_s = 0.0;  ///< while the bus was whole
+};
+
+/// The stage's way to a standstill after the peer went silent, read every half millisecond by the
+/// machine's own clock.
+Standstill standstill(lying::Peer& peer, const std::stop_token& ended) {
   std::array<std::uint16_t, registers::kRegisterCount> image{};
   const auto wide_at = [&](int address) { return registers::wide(image.data() + address); };
-  double moved_m_s = 0.0, stood_s = 0.0;
-  // A busy machine takes its time until the station has started and moved.
-  const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(60);
-  while (stood_s == 0.0 && std::chrono::steady_clock::now() < deadline) {
+  Standstill out;
+  for (double last_s = 0.0; out.after_s == 0.0 && !ended.stop_requested();) {
     peer.electronics().read(registers::kUnit, image);
     const double now_s = 1e-4 * double(static_cast<std::uint32_t>(wide_at(registers::kTime_100us)));
-    const double v = 1e-6 * wide_at(registers::kVelocity_um_s);
-    if (peer.answered() < 3000) moved_m_s = std::max(moved_m_s, v);
-    if (peer.answered() >= 3000 && v == 0.0) stood_s = now_s - peer.last_honest_s();
+    const double v_m_s = 1e-6 * wide_at(registers::kVelocity_um_s);
+    if (peer.is_honest())
+      out.fastest_m_s = std::max(out.fastest_m_s, v_m_s);
+    else if (v_m_s == 0.0)
+      out.after_s = now_s - peer.last_honest_s(), out.between_s = now_s - last_s;
+    last_s = now_s;
     ::usleep(500);
   }
-  EXPECT_GT(moved_m_s, 0.001);
-  ASSERT_GT(stood_s, 0.0);
-  // By the machine's own clock, from its last honest answer; read every half millisecond.
-  RecordProperty("stood_after_ms", std::to_string(1e3 * stood_s));
-  EXPECT_LE(stood_s, 0.010);
+  return out;
+}
+
+TEST_F(ProbingTrial, AfterTheLossOfTheBusTheStageStandsWithinTenMilliseconds) {
+  Standstill seen;
+  // A reading that came more than 2 ms after the one before it says nothing of 10 ms: once more.
+  for (int k = 0; k < 5 && (seen.after_s == 0.0 || seen.between_s > 0.002); ++k) {
+    fs::remove_all(data_);
+    lying::Peer peer(Lie::silence, 3000);
+    std::jthread reader([&](const std::stop_token& ended) { seen = standstill(peer, ended); });
+    on_rig(peer.port());
+  }
+  EXPECT_GT(seen.fastest_m_s, 0.001);
+  ASSERT_GT(seen.after_s, 0.0);
+  ASSERT_LE(seen.between_s, 0.002);
+  RecordProperty("stood_after_ms", std::to_string(1e3 * seen.after_s));
+  EXPECT_LE(seen.after_s, 0.010);
 }
 
 TEST_F(ProbingTrial, RunsAModelWithAnEffectWhoseBoneGoesDeeperThanTheRig) {
@@ -209,25 +248,26 @@ TEST_F(ProbingTrial, RunsAModelWithAnEffectWhoseBoneGoesDeeperThanTheRig) {
 }
 
 TEST_F(ProbingTrial, AnEmergencyStopNeedsAPersonAtTheMachine) {
-  lying::Peer peer(Lie::none, 0);
-  const auto button = [&](int which, std::uint16_t pressed) {
-    EXPECT_TRUE(peer.electronics().write(registers::kWorldUnit, which, std::array{pressed}));
-  };
-  std::jthread hand([&](const std::stop_token& ended) {
-    while (peer.answered() < 1500 && !ended.stop_requested()) ::usleep(1000);
-    button(registers::kStopButton, 1);
+  const auto runs = undisturbed(Lie::none, 0, [&](lying::Peer& peer) {
+    const auto button = [&](int which, std::uint16_t pressed) {
+      EXPECT_TRUE(peer.electronics().write(registers::kWorldUnit, which, std::array{pressed}));
+    };
+    std::jthread hand([&](const std::stop_token& ended) {
+      while (peer.answered() < 1500 && !ended.stop_requested()) ::usleep(1000);
+      button(registers::kStopButton, 1);
+    });
+    const Ended stopped = on_rig(peer.port());
+    hand = {};
+    button(registers::kStopButton, 0);
+    const Ended refused = on_rig(peer.port());
+    button(registers::kResetButton, 1);
+    return std::vector{stopped, refused, on_rig(peer.port(), "1")};
   });
-  const Ended stopped = on_rig(peer.port());
-  hand = {};
-  EXPECT_EQ(stopped.code, 1);
-  EXPECT_THAT(stopped.said, HasSubstr("emergency stop"));
-  button(registers::kStopButton, 0);
-  const Ended refused = on_rig(peer.port());
-  EXPECT_EQ(refused.code, 2);
-  EXPECT_THAT(refused.said, HasSubstr("emergency stop"));
-  button(registers::kResetButton, 1);
-  const Ended again = on_rig(peer.port(), "1");
-  EXPECT_EQ(again.code, 0) << again.said;  // the stage was brought back to the entry first
+  EXPECT_EQ(runs[0].code, 1);
+  EXPECT_THAT(runs[0].said, HasSubstr("emergency stop"));
+  EXPECT_EQ(runs[1].code, 2) << runs[1].said;
+  EXPECT_THAT(runs[1].said, HasSubstr("emergency stop"));
+  EXPECT_EQ(runs[2].code, 0) << runs[2].said;  // the stage was brought back to the entry first
   EXPECT_EQ(trials().size(), 2u);
 }
 
