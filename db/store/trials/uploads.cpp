@@ -26,10 +26,19 @@ core::Result<std::vector<Upload>> open_uploads(Reading& tx) {
 }
 
 core::Result<std::vector<Upload>> open_uploads_since(Reading& tx, std::int64_t utc_us) {
-  return all_of(tx.query(std::string(kUpload) +
-                             "where state = 'receiving' and announced_utc_us > ? order by trial_id",
-                         {utc_us}),
-                upload_from);
+  return all_of(
+      tx.query(std::string(kUpload) + "where state = 'receiving' and announced_utc_us > ? "
+                                      "order by announced_utc_us, trial_id",
+               {utc_us}),
+      upload_from);
+}
+
+core::Result<std::uint64_t> open_upload_bytes_since(Reading& tx, std::int64_t utc_us) {
+  auto rows =
+      TRY(tx.query("select cast(coalesce(sum(size_bytes), 0) as bigint) from uploads "
+                   "where state = 'receiving' and announced_utc_us > ?",
+                   {utc_us}));
+  return rows.front().count(0);
 }
 
 core::Result<std::uint64_t> open_upload_count(Reading& tx, const std::string& station_id) {

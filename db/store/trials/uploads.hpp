@@ -25,6 +25,8 @@ core::Result<std::optional<Upload>> upload_of(Reading& tx, const std::string& tr
 core::Result<std::vector<Upload>> open_uploads(Reading& tx);
 /// Those of them that were announced after `utc_us`.
 core::Result<std::vector<Upload>> open_uploads_since(Reading& tx, std::int64_t utc_us);
+/// What they announced together, bytes.
+core::Result<std::uint64_t> open_upload_bytes_since(Reading& tx, std::int64_t utc_us);
 core::Result<std::uint64_t> open_upload_count(Reading& tx, const std::string& station_id);
 core::Result<void> add_upload(Writing& tx, const Upload& upload, std::int64_t now_utc_us);
 core::Result<void> complete_upload(Writing& tx, const std::string& trial_id);

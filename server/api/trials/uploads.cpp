@@ -40,9 +40,14 @@ core::Result<void> check_disk(const Backend& backend, std::uint64_t size_bytes) 
 
 namespace {
 
+/// What was announced together nearly always fits; only where it does not, each file is looked at
+/// for what it holds already.
 core::Result<void> check_room_in(store::Reading& tx, const Backend& backend,
                                  std::uint64_t size_bytes) {
-  auto open = TRY(store::open_uploads_since(tx, backend.now_utc_us() - kReserved_us));
+  const std::int64_t since_utc_us = backend.now_utc_us() - kReserved_us;
+  const auto announced_bytes = TRY(store::open_upload_bytes_since(tx, since_utc_us));
+  if (check_disk(backend, size_bytes + announced_bytes)) return {};
+  auto open = TRY(store::open_uploads_since(tx, since_utc_us));
   for (const store::Upload& upload : open) {
     const std::uint64_t here = backend.partials.size_of(upload.trial_id);
     size_bytes += upload.size_bytes - std::min(here, upload.size_bytes);
