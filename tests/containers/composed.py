@@ -3,7 +3,8 @@
 
     deploy/packages && sudo tests/containers/composed.py --packages build/packages
 
-It needs root, a Debian mirror, podman, runc, docker-compose and mmdebstrap; images and volumes are in a scratch folder. No registry is asked:
+It needs root, a Debian mirror, podman, netavark, iptables, runc, docker-compose and mmdebstrap; images and volumes are in a scratch folder.
+No registry is asked:
 debian:bookworm-slim is made by mmdebstrap, postgres:15 and nginx:1.22 are the stand-ins beside this file. Exit status 77: this machine runs no
 containers; the reason is printed."""
 import argparse
@@ -74,7 +75,7 @@ class Engine:
         self.service.wait(30)
         for words in (("rm", "--all", "--force", "--time", "5"), ("network", "prune", "--force"), ("volume", "prune", "--force")):
             subprocess.run(["podman", *words], env=self.environment, capture_output=True)
-        subprocess.run(["umount", "-q", self.folder / "images/overlay"], check=False)
+        subprocess.run(["umount", "-q", "--lazy", self.folder / "images/overlay"], check=False)  # what ended last may still hold it
 
 
 def images(engine, packages):
