@@ -9,7 +9,7 @@
 namespace tractus::http {
 
 inline constexpr std::size_t kPiece_bytes = 256 * 1024;  ///< read at once
-inline constexpr std::size_t kSent_bytes = 4u << 20;  ///< sent at once, when the kernel takes them
+inline constexpr std::size_t kSent_bytes = 4u << 20;     ///< sent in one go, to who reads fast
 
 /// Has the other side of the socket closed it, or at least its sending half?
 bool is_closed_by_peer(int socket);
@@ -26,8 +26,9 @@ class File {
   explicit operator bool() const { return fd_ >= 0; }
   /// Fills `piece` completely; false if the file is too short or cannot be read.
   bool read_at(std::uint64_t offset, std::string& piece) const;
-  /// Copies to a non-blocking socket within the kernel. Returns the number of bytes that the socket
-  /// accepted; nothing if the file is too short or the connection is closed.
+  /// Copies to a non-blocking socket, and waits up to 2 ms while it empties. Returns the number of
+  /// bytes that the socket accepted, 0 if it was full; nothing if the file is too short or the
+  /// connection is closed.
   std::optional<std::uint64_t> send_to(const File& socket, std::uint64_t offset,
                                        std::uint64_t size) const;
 

@@ -147,7 +147,7 @@ net::awaitable<void> Server::State::accept_all() {
       continue;
     const auto endpoint = socket.remote_endpoint(failure);
     socket.set_option(tcp::no_delay(true), failure);
-    socket.native_non_blocking(true, failure);  // sendfile must not wait
+    socket.native_non_blocking(true, failure);  // File::send_to must not wait for good
     connections.emplace_front(std::move(socket), tls ? &*tls : nullptr);
     connections.front().peer = endpoint.address().to_string(failure);
     net::co_spawn(io, serve(connections.begin()), net::detached);
