@@ -123,6 +123,9 @@ struct PalpationRecordingSettings {
   double slowest_rate_Hz = 40.0;
   /// A faster recording is thinned to this after smoothing. Bound.
   double fastest_Hz = 250.0;
+  /// Acceleration is that of means over so long: a tracker's noise is alike within it, and hands move at less than a
+  /// quarter of its rate. Physical.
+  double acceleration_of_means_s = 0.02;
 };
 
 /// What a fit of palpations compares.

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "lab/settings.hpp"
 #include "lab/signal/smoother.hpp"
@@ -60,10 +61,46 @@ double noise_of(const std::vector<double>& y) {
                    1e-9 * most, 1e-12});
 }
 
+/// Linear between the samples, the nearest one's beyond them.
+double between(const std::vector<double>& t_s, const std::vector<double>& y, double at_s) {
+  const auto after = std::size_t(std::ranges::upper_bound(t_s, at_s) - t_s.begin());
+  if (after == 0 || after == t_s.size()) return y[after == 0 ? 0 : after - 1];
+  const double share = (at_s - t_s[after - 1]) / (t_s[after] - t_s[after - 1]);
+  return y[after - 1] + share * (y[after] - y[after - 1]);
+}
+
+/// Means of so many samples each, in turn.
+std::vector<double> means_of(const std::vector<double>& y, std::size_t each) {
+  std::vector<double> out;
+  for (std::size_t k = 0; k + each <= y.size(); k += each)
+    out.push_back(
+        std::accumulate(y.begin() + std::ptrdiff_t(k), y.begin() + std::ptrdiff_t(k + each), 0.0) /
+        double(each));
+  return out;
+}
+
 /// Every so many-th of a smoothed channel.
 struct Kept {
   std::vector<double> value, rate, acceleration, value_sd, rate_sd, acceleration_sd;
 };
+
+/// The acceleration once more, from means: a tracker filters, and white noise as small as neighbouring samples tell lets
+/// the smoother take the rest of the tracker's noise for motion. The mass of a probe was then drowned in it.
+void set_acceleration(const std::vector<double>& t_s, const std::vector<double>& y,
+                      std::size_t stride, Kept& out) {
+  const double spacing_s = (t_s.back() - t_s.front()) / double(t_s.size() - 1);
+  const auto each =
+      std::size_t(std::lround(kPalpationRecording.acceleration_of_means_s / spacing_s));
+  if (each < 2 || y.size() < kPalpationRecording.fewest_samples * each) return;
+  const std::vector<double> mean_t_s = means_of(t_s, each), mean = means_of(y, each);
+  const Smoothed slow = smooth(mean_t_s, mean, noise_of(mean));
+  for (std::size_t k = 0; k < out.value.size(); ++k) {
+    const double at_s = t_s[k * stride];
+    out.acceleration[k] = between(mean_t_s, slow.acceleration, at_s);
+    out.acceleration_sd[k] = between(mean_t_s, slow.acceleration_sd, at_s);
+  }
+}
+
 Kept kept(const std::vector<double>& t_s, const std::vector<double>& y, std::size_t stride) {
   const Smoothed s = smooth(t_s, y, noise_of(y));
   Kept out;
@@ -75,6 +112,7 @@ Kept kept(const std::vector<double>& t_s, const std::vector<double>& y, std::siz
     out.rate_sd.push_back(s.rate_sd[k]);
     out.acceleration_sd.push_back(s.acceleration_sd[k]);
   }
+  set_acceleration(t_s, y, stride, out);
   return out;
 }
 
