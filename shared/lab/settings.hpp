@@ -256,6 +256,14 @@ struct ScreenSettings {
   double first_strength = 0.05;
 };
 
+/// A mass is felt in free air as well.
+struct FreeAirSettings {
+  /// An effect of whose mean square less than this share is in free air is not held against it. Tuned.
+  double least_share = 0.05;
+  /// What is not seen there by half is not named. Physical.
+  double least_shown = 0.5;
+};
+
 /// A drift that follows the motion is no sensor's.
 struct DriftOnMotionSettings {
   /// Time constants of the motion's memory that is held against the drift. Physical.
@@ -398,6 +406,7 @@ struct Settings {
   PosteriorSettings posterior;
   ValidationSettings validation;
   DiagnosisSettings diagnosis;
+  FreeAirSettings free_air;
   DriftOnMotionSettings drift_on_motion;
   DependenceSettings dependence;
   GrammarSettings grammar;

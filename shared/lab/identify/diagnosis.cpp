@@ -217,6 +217,11 @@ Result<Diagnosis> diagnose(const Problem& problem, const DiagnoseOptions& option
                     "so it is no trend of "
                     "the sensor's own",
                     selection.refused()));
+  for (const std::string& id : selection.unseen_in_air())
+    out.notes.push_back(
+        fmt::format("{} was left out: it lowers the error in contact, where noise of the pose "
+                    "does as much, and is not seen in free air, where it would be felt as well",
+                    id));
   out.ranking = ranking(residual, selection, posterior);
   if (options.detection_limits)
     add_detection_limits(residual, selection, final, out.final_fit.rmse, out.ranking);

@@ -62,6 +62,9 @@ class ResidualModel {
   virtual Residuals full_rate(const Structure& structure, std::span<const double> values,
                               int trial) const = 0;
 
+  /// Which samples of a trial touch nothing, so that the pose's errors make no force there; empty where a rig has no such.
+  virtual std::vector<bool> in_free_air(int /*trial*/) const { return {}; }
+
   /// Numbers to report of an effect that are not parameters of the fit: the range of what is free
   /// per trial; empty for all others.
   virtual std::vector<Derived> derived(const Structure& structure, std::span<const double> values,

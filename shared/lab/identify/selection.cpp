@@ -9,6 +9,7 @@
 
 #include "lab/identify/drift_on_motion.hpp"
 #include "lab/identify/fit_report.hpp"
+#include "lab/identify/free_air.hpp"
 #include "lab/identify/structure_posterior.hpp"
 #include "lab/settings.hpp"
 
@@ -86,6 +87,8 @@ bool Selection::clearly_better(const Solution& larger, const Solution& smaller) 
 
 bool Selection::admissible(const Solution& at) const {
   if (!refused_.empty() && contains(at.structure, refused_)) return false;
+  for (const std::string& id : unseen_in_air_)
+    if (contains(at.structure, id)) return false;
   for (const Candidate& candidate : residual_.problem().candidates()) {
     if (candidate.facts.admissible == nullptr || !contains(at.structure, candidate.facts.id))
       continue;
@@ -269,6 +272,24 @@ void Selection::refuse_trends() {
   }
 }
 
+/// Noise of a pose in contact looks like a small mass at the tip. A mass is felt in free air, too: what is not seen there is
+/// no mass, and the choice is made anew without it.
+void Selection::require_free_air() {
+  for (bool dropped = true; dropped;) {
+    dropped = false;
+    for (const std::string& id : Structure(chosen().structure).effects) {
+      const Structure less = minus(chosen().structure, id);
+      part(Solution(chosen()), less);
+      const auto shown = share_in_free_air(residual_, chosen(), tried_.at(name(less)));
+      if (!shown || *shown >= kSettings.free_air.least_shown) continue;
+      unseen_in_air_.insert(id);
+      choose();
+      dropped = true;
+      break;
+    }
+  }
+}
+
 /// Root mean square of the judged samples of trials that a fit did not see, without weights.
 double error_on_held_out(const Residual& residual, Solution at) {
   differentiate(residual, at);
@@ -351,6 +372,7 @@ bool Selection::run(const std::function<void()>& after_singles) {
     if (!told_from_zero(residual_, *single)) part(Solution(*single), {});
   choose();
   refuse_trends();
+  require_free_air();
   require_lower_error();
   explain_shifts();
   // In which order they brought most: the best single of them first.

@@ -37,6 +37,8 @@ class Selection {
   const std::vector<std::string>& order() const { return order_; }
   /// An effect that reached the floor by imitation and is not named for that; empty for none.
   const std::string& refused() const { return refused_; }
+  /// Effects that act in free air, too, and are not seen there.
+  const std::set<std::string>& unseen_in_air() const { return unseen_in_air_; }
   /// Does the larger bring the residual so much nearer to the floor than the smaller that it is worth growing further?
   bool clearly_better(const Solution& larger, const Solution& smaller) const;
   /// Share by which the larger must lower the error on held-out trials, without weights, below that of the smaller.
@@ -55,6 +57,7 @@ class Selection {
   void simplify(const Structure& whole);
   void choose();
   void refuse_trends();
+  void require_free_air();
   void require_lower_error();
   void explain_shifts();
   void explain_shifts_by(const std::string& bias);
@@ -71,6 +74,7 @@ class Selection {
   std::set<std::string> refined_;  // fitted to the end since they were last replaced
   std::vector<std::string> order_;
   std::string chosen_, refused_;
+  std::set<std::string> unseen_in_air_;
   bool stopped_ = false;
 };
 

@@ -87,6 +87,7 @@ class PalpationProblem final : public Problem {
   double noise_floor(const Structure& structure, std::span<const double> values) const override;
   Residuals full_rate(const Structure& structure, std::span<const double> values,
                       int k) const override;
+  std::vector<bool> in_free_air(int k) const override;
   States states(int k) const override;
   States predictors(int k) const override;
   std::vector<Derived> derived(const Structure& structure, std::span<const double> values,
@@ -281,6 +282,24 @@ Residuals PalpationProblem::full_rate(const Structure& structure, std::span<cons
     if (slow.size() > 0) error -= slow.col(Eigen::Index(i));
     out.channels[0].push_back(error.head<3>().norm());
     for (int c = 0; c < 6; ++c) out.channels[std::size_t(c) + 1].push_back(error[c]);
+  }
+  return out;
+}
+
+/// Where the given model feels less than a contact's force, for as long as a mean of the acceleration before and after.
+std::vector<bool> PalpationProblem::in_free_air(int k) const {
+  const PalpationRecording& r = trial(k);
+  std::vector<double> start;
+  for (const Parameter& p : numbers_.parameters({})) start.push_back(p.start);
+  models::PalpationAnswer at;
+  runtime_of({}, start).predict_at(r.motion, r.all(), r.deflection_m, at);
+  std::vector<bool> out(r.size(), true);
+  const double around_s = kSettings.palpation_recording.acceleration_of_means_s;
+  for (std::size_t i = 0, from = 0; i < r.size(); ++i) {
+    if (at.wrench_H[i].force_N.norm() < kSettings.palpation_weights.contact_N) continue;
+    while (r.motion.t_s[from] < r.motion.t_s[i] - around_s) ++from;
+    for (std::size_t j = from; j < r.size() && r.motion.t_s[j] <= r.motion.t_s[i] + around_s; ++j)
+      out[j] = false;
   }
   return out;
 }

@@ -8,6 +8,7 @@
 #include <random>
 
 #include "lab/identify/fit.hpp"
+#include "lab/identify/free_air.hpp"
 #include "lab/settings.hpp"
 #include "models/palpation_runtime.hpp"
 
@@ -168,6 +169,48 @@ TEST(PalpationProblem, AMassIsFoundThroughATrackerWhoseNoiseLingers) {
   const auto found = fit(**problem, {{"probe_inertia"}}, {.threads = 1, .held_out = false});
   ASSERT_TRUE(found) << found.error().what;
   EXPECT_NEAR(estimate(*found, "probe_inertia/mass_kg").value, mass_kg, 0.15 * mass_kg);
+}
+
+/// How much of a mass of 0.15 kg the samples in free air show of recordings with one of `mass_kg`.
+double shown_in_air(double mass_kg) {
+  std::vector<effects::EffectInstance> hidden;
+  if (mass_kg > 0.0) hidden.push_back({"probe_inertia", {mass_kg, 0.05}});
+  const auto problem = make_palpation_problem(model(), recordings(model(hidden), 4, 500, 4.0),
+                                              corner(), {.threads = 1});
+  EXPECT_TRUE(problem) << problem.error().what;
+  const Residual residual(**problem, 1);
+  const auto at = [&](const Structure& structure) {
+    Solution out;
+    out.structure = structure;
+    out.parameters = (*problem)->parameters(structure);
+    for (const Parameter& p : out.parameters)
+      out.values.push_back(p.pointer == "probe_inertia/mass_kg"    ? 0.15
+                           : p.pointer == "probe_inertia/centre_m" ? 0.05
+                                                                   : p.start);
+    return out;
+  };
+  const auto shown = share_in_free_air(residual, at({{"probe_inertia"}}), at({}));
+  EXPECT_TRUE(shown);
+  return shown.value_or(-1.0);
+}
+
+TEST(PalpationProblem, FreeAirShowsAMassThatIsThereAndNoneThatIsNot) {
+  EXPECT_NEAR(shown_in_air(0.15), 1.0, 0.1);
+  EXPECT_NEAR(shown_in_air(0.075), 0.5, 0.1);
+  EXPECT_NEAR(shown_in_air(0.0), 0.0, 0.1);
+}
+
+/// Friction does nothing where nothing is touched: free air says nothing of it.
+TEST(PalpationProblem, FreeAirSaysNothingOfWhatActsInContactAlone) {
+  const auto problem = problem_of(model({{"contact_friction", {0.15, 1.0}}}), model());
+  Solution with, without;
+  with.structure = {{"contact_friction"}};
+  with.parameters = problem->parameters(with.structure);
+  for (const Parameter& p : with.parameters)
+    with.values.push_back(p.pointer == "contact_friction/coefficient" ? 0.15 : p.start);
+  without.parameters = problem->parameters({});
+  for (const Parameter& p : without.parameters) without.values.push_back(p.start);
+  EXPECT_FALSE(share_in_free_air(Residual(*problem, 1), with, without));
 }
 
 class AHiddenEffect : public testing::TestWithParam<effects::EffectInstance> {};
