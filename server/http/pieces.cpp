@@ -12,8 +12,8 @@
 namespace tractus::http {
 namespace {
 
-// Copied through the cache: on a loopback of two cores 1.2 times as fast as sendfile(2), whose pages
-// reach the socket one by one.
+// Copied through the cache: 1.2 times as fast as sendfile(2) to four stations on a loopback of two
+// cores (tests/bench/distribution).
 constexpr std::size_t kCopied_bytes = 512 * 1024;
 constexpr std::chrono::milliseconds kMostWait{2};  ///< of a worker for one socket
 
@@ -49,22 +49,24 @@ std::optional<std::uint64_t> File::send_to(const File& socket, std::uint64_t off
   using Clock = std::chrono::steady_clock;
   thread_local std::string piece(kCopied_bytes, '\0');
   const auto until = Clock::now() + kMostWait;
-  for (std::uint64_t done = 0;;) {
+  std::uint64_t done = 0;
+  while (done < size) {
+    // A full socket costs no read. Once it has taken some, waiting is cheaper than coming back.
+    const auto left = std::chrono::ceil<std::chrono::milliseconds>(until - Clock::now()).count();
+    pollfd room{.fd = socket.fd_, .events = POLLOUT, .revents = 0};
+    if (::poll(&room, 1, done == 0 || left < 0 ? 0 : int(left)) <= 0) return done;
     const std::size_t next = std::min<std::uint64_t>(kCopied_bytes, size - done);
     const ssize_t read = ::pread(fd_, piece.data(), next, static_cast<off_t>(offset + done));
     if (read < 0 && errno == EINTR) continue;
     if (read <= 0) return std::nullopt;
     const ssize_t n =
         ::send(socket.fd_, piece.data(), static_cast<std::size_t>(read), MSG_NOSIGNAL);
-    if (n > 0) done += static_cast<std::uint64_t>(n);
-    if (done == size) return done;
-    if (n >= 0 || errno == EINTR) continue;
-    if (errno != EAGAIN) return std::nullopt;
-    // Who reads fast makes room at once: waiting here is cheaper than coming back.
-    const auto left = std::chrono::ceil<std::chrono::milliseconds>(until - Clock::now());
-    pollfd room{.fd = socket.fd_, .events = POLLOUT, .revents = 0};
-    if (done == 0 || left.count() <= 0 || ::poll(&room, 1, int(left.count())) <= 0) return done;
+    if (n > 0)
+      done += static_cast<std::uint64_t>(n);
+    else if (errno != EAGAIN && errno != EINTR)
+      return std::nullopt;
   }
+  return done;
 }
 
 }  // namespace tractus::http

@@ -275,6 +275,7 @@ void Selection::refuse_trends() {
 /// Noise of a pose in contact looks like a small mass at the tip. A mass is felt in free air, too: what is not seen there is
 /// no mass, and the choice is made anew without it.
 void Selection::require_free_air() {
+  if (residual_.problem().in_free_air(0).empty()) return;
   for (bool dropped = true; dropped;) {
     dropped = false;
     for (const std::string& id : Structure(chosen().structure).effects) {
