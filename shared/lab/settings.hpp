@@ -290,6 +290,9 @@ struct DependenceSettings {
   std::size_t groups = 4;
   /// Blocks of neighbouring samples of a trial. Bound.
   std::size_t blocks_per_trial = 800;
+  /// A block is no longer than the motion takes for this part of a period, by its velocity's and acceleration's mean
+  /// squares: of 10 ms of an oscillation of 70 Hz the mean says nothing. Numeric.
+  double longest_block_rad = 0.5;
   /// Time constants of the velocity's memory. Physical.
   std::array<double, 3> memories_s{0.03, 0.15, 0.8};
   /// A signal that explains less of the variance is not named. Bound.
@@ -336,7 +339,8 @@ struct ComparisonSettings {
 };
 
 /// Log odds that a model lacks a material effect, linear in what it leaves. Fitted by tests/hidden_physics/benchmark/calibrate.py
-/// to the answers to the first 110 probing and 22 palpation sets of the development generation "january".
+/// to the answers to the first 110 probing sets of the development generation "january", and to 113 palpation sets of
+/// "february", "march", "may" and "june".
 struct MoreMissingOdds {
   /// Where the held-out error is at the noise floor and no signal predicts any of it. Tuned.
   double at_floor;
@@ -362,6 +366,9 @@ struct SelectionThresholds {
   double observations_per_trial;
   /// A trend of which the motion's memory explains this share is no sensor's; above 1: never asked.
   double drift_r2_on_motion;
+  /// Errors that all trials have in common (of the motion, of the sensor) do not show in how far the trials disagree:
+  /// standard errors are larger by this factor. Fitted to labelled answers so that intervals of 90 % hold 90 %.
+  double common_errors;
   MoreMissingOdds more;
 
   constexpr SelectionThresholds with(MoreMissingOdds other) const {
@@ -379,6 +386,7 @@ struct Settings {
                                          .least_gain_of_excess = 0.004,
                                          .observations_per_trial = 12.0,
                                          .drift_r2_on_motion = 0.45,
+                                         .common_errors = 1.25,
                                          .more = {-3.4, 5.9, 6.6}};
   SelectionThresholds torque_thresholds = probing_thresholds.with({-5.5, 3.8, 6.6});
   SelectionThresholds palpation_thresholds{.stop_below = 0.9,
@@ -387,7 +395,8 @@ struct Settings {
                                            .least_gain_of_excess = 0.0,
                                            .observations_per_trial = 60.0,
                                            .drift_r2_on_motion = 1.01,
-                                           .more = {-0.8, 5.1, 6.6}};
+                                           .common_errors = 1.7,
+                                           .more = {-2.2, 5.1, 10.7}};
   SmoothingSettings smoothing;
   PhasesSettings phases;
   DecimationSettings decimation;

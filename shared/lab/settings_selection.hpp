@@ -80,9 +80,6 @@ struct ValidationSettings {
   double most_of_one_fold = 0.9;
   /// Student's 95 % point over the normal's, squared, to first order in 1/k. Derived.
   double few_clusters = 3.0;
-  /// Errors that all trials have in common (of the motion, of the sensor) do not show in how far the trials disagree:
-  /// standard errors are larger by this factor. Fitted to labelled answers so that intervals of 90 % hold 90 %: tuned.
-  double common_errors = 1.25;
   /// Chance that any effect of a catalogue is named though the base has all. Custom.
   double found_by_chance = 0.05;
   /// A number whose standard error is more than this share of its prior's is not informed by the

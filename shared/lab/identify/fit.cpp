@@ -151,8 +151,8 @@ void inform(const Residual& residual, const Solution& at, const Eigen::VectorXd&
   const auto n = Eigen::Index(at.values.size());
   const auto [covariance, variances] = known_of(residual, at, weights, whole);
   const double folds = double(folds_of(residual).size());
-  const double widened =
-      kValidation.common_errors * std::sqrt(1.0 + kValidation.few_clusters / folds);
+  const double widened = residual.problem().selection_thresholds().common_errors *
+                         std::sqrt(1.0 + kValidation.few_clusters / folds);
   fit.correlation = Eigen::MatrixXd::Zero(n, n);
   for (Eigen::Index k = 0; k < n; ++k) {
     const Parameter& p = at.parameters[std::size_t(k)];
@@ -186,6 +186,13 @@ void inform(const Residual& residual, const Solution& at, const Eigen::VectorXd&
                                           fit.estimates[std::size_t(k)].pointer,
                                           fit.estimates[std::size_t(j)].pointer,
                                           fit.correlation(k, j)));
+}
+
+/// A search may end a turn away from the angle that a reader expects, −π to π.
+void within_a_period(Solution& at) {
+  for (std::size_t k = 0; k < at.values.size(); ++k)
+    if (const double period = at.parameters[k].period; period > 0.0)
+      at.values[k] = std::remainder(at.values[k], period);
 }
 
 void hold_out(const Residual& residual, const Solution& at, const Gram& whole,
@@ -222,6 +229,7 @@ void hold_out(const Residual& residual, const Solution& at, const Gram& whole,
 
 Fit report(const Residual& residual, Solution& at, bool held_out) {
   const Problem& problem = residual.problem();
+  within_a_period(at);
   differentiate(residual, at);
   Fit fit;
   fit.structure = at.structure;

@@ -33,14 +33,14 @@ ChangeSums sums_of(const ResidualModel& model, const Solution& with, const Solut
 }  // namespace
 
 std::optional<double> share_in_free_air(const Residual& residual, const Solution& with,
-                                        const Solution& without) {
+                                        const Solution& without, double least_share) {
   std::vector<ChangeSums> trials(std::size_t(residual.trials()));
   parallel(residual.trials(), residual.threads(),
            [&](int k) { trials[std::size_t(k)] = sums_of(residual.problem(), with, without, k); });
   ChangeSums sum;
   for (const ChangeSums& one : trials)
     sum.all += one.all, sum.air += one.air, sum.shown += one.shown;
-  if (!(sum.air > kSettings.free_air.least_share * sum.all)) return std::nullopt;
+  if (!(sum.air > least_share * sum.all)) return std::nullopt;
   return sum.shown / sum.air;
 }
 

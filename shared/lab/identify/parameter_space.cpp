@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "lab/settings.hpp"
 
@@ -77,6 +78,10 @@ std::vector<Parameter> parameters_of(const effects::EffectFacts& facts) {
       parameter.prior_sd = p.prior_sd;
       parameter.shape = std::isnan(p.off);
       if (!parameter.shape) parameter.off = p.off;
+      // An angle of which every value is plausible.
+      if (constexpr double kTurn = 2.0 * std::numbers::pi;
+          effects::unit_of(p) == "rad" && p.high - p.low >= kTurn)
+        parameter.period = kTurn;
       out.push_back(std::move(parameter));
     }
   return out;

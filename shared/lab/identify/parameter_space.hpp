@@ -28,8 +28,9 @@ struct Parameter {
   double step;  ///< a change that is felt but small, of the logarithm if logarithmic: the unit of
                 ///< finite differences
   bool logarithmic = false;  ///< searched in its logarithm; start and low are then > 0
-  bool shape = false;  ///< has no value at which its effect vanishes: tried from several starts
-  double off = 0.0;    ///< if it is no shape: where its effect vanishes
+  bool shape = false;   ///< has no value at which its effect vanishes: tried from several starts
+  double off = 0.0;     ///< if it is no shape: where its effect vanishes
+  double period = 0.0;  ///< if above 0: so much more is the same, as of an angle
   /// If above 0: the loss is rough in it (the place of a border, which samples cross one by one),
   /// so it is also sought by trial within this of where it is.
   double rough = 0.0;

@@ -5,6 +5,7 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <optional>
 
@@ -26,7 +27,7 @@ using Columns = std::vector<std::vector<double>>;
 struct Blocks {
   Columns signals, errors;    // [signal][block], [component][block]
   std::vector<double> count;  // samples of a block
-  double squares = 0.0;       // of the error's components over all judged samples
+  double squares = 0.0;       // of the error's components over the judged samples of all blocks
 };
 
 /// How far the motion has come since it last turned.
@@ -58,14 +59,39 @@ States with_memory(States states, std::span<const double> t_s) {
   return states;
 }
 
-/// Adds the blocks of a trial's samples from `from` to `end`.
+double mean_square(std::span<const double> y) {
+  return std::inner_product(y.begin(), y.end(), y.begin(), 0.0) / double(y.size());
+}
+
+/// Within how many samples the velocity hardly changes; no bound where it is not among the states.
+std::size_t steady_samples(const States& states) {
+  const auto at = std::ranges::find(states.names, "velocity_m_s");
+  constexpr std::size_t kNoBound = std::numeric_limits<std::size_t>::max();
+  if (at == states.names.end()) return kNoBound;
+  const auto& v = states.values[std::size_t(at - states.names.begin())];
+  std::vector<double> step(v.size());
+  std::adjacent_difference(v.begin(), v.end(), step.begin());
+  if (step.size() < 2) return kNoBound;
+  const double square = mean_square(std::span(step).subspan(1));
+  if (!(square > 0.0)) return kNoBound;
+  const double samples = kDependence.longest_block_rad * std::sqrt(mean_square(v) / square);
+  return samples < double(v.size()) ? std::max<std::size_t>(1, std::size_t(samples)) : kNoBound;
+}
+
+/// Blocks of so many samples, and from the start of one to that of the next: of a fast motion that is sampled for long,
+/// a part is looked at, for means over its periods would show nothing.
+struct BlockPlan {
+  std::size_t length, spacing;
+};
+
+/// The blocks of a trial's samples from `from` to `end`.
 Blocks blocks_of(const Residuals& r, const States& states, std::span<const std::size_t> components,
-                 std::size_t from, std::size_t end, std::size_t length) {
+                 std::size_t from, std::size_t end, BlockPlan plan) {
   Blocks out;
   out.signals.resize(states.names.size());
   out.errors.resize(components.size());
-  for (std::size_t first = from; first < end; first += length) {
-    const std::size_t last = std::min(end, first + length);
+  for (std::size_t first = from; first < end; first += plan.spacing) {
+    const std::size_t last = std::min(end, first + plan.length);
     double count = 0.0;
     std::vector<double> signal(states.names.size(), 0.0), error(components.size(), 0.0);
     for (std::size_t k = first; k < last; ++k) {
@@ -107,11 +133,12 @@ Set set_of(const Residual& residual, const Solution& at) {
   parallel(problem.trials(), residual.threads(), [&](int k) {
     const Residuals r = problem.full_rate(at.structure, at.values, k);
     const States states = with_memory(problem.predictors(k), r.t_s);
-    const std::size_t n = r.t_s.size(), length = 1 + n / kDependence.blocks_per_trial;
+    const std::size_t n = r.t_s.size(), spacing = 1 + n / kDependence.blocks_per_trial;
+    const BlockPlan plan{std::min(spacing, steady_samples(states)), spacing};
     for (int p = 0; p < pieces; ++p)
       folds[std::size_t(k)].push_back(
           blocks_of(r, states, components, n * std::size_t(p) / std::size_t(pieces),
-                    n * std::size_t(p + 1) / std::size_t(pieces), length));
+                    n * std::size_t(p + 1) / std::size_t(pieces), plan));
   });
   for (auto& of_trial : folds)
     for (Blocks& fold : of_trial) out.folds.push_back(std::move(fold));

@@ -37,6 +37,12 @@ std::pair<double, double> mean_squares(const Solution& a, const Solution& b) {
   return {of_a / std::max(1.0, count), of_b / std::max(1.0, count)};
 }
 
+bool is_free_per_trial(const Problem& problem, const std::string& id) {
+  return std::ranges::any_of(problem.candidates(), [&](const Candidate& candidate) {
+    return candidate.facts.free_per_trial && candidate.facts.id == id;
+  });
+}
+
 }  // namespace
 
 /// n/2 ln S + Δprior/2 + price·k, in nats: as Schwarz's criterion [Schwarz1978], with n the
@@ -272,8 +278,8 @@ void Selection::refuse_trends() {
   }
 }
 
-/// Noise of a pose in contact looks like a small mass at the tip. A mass is felt in free air, too: what is not seen there is
-/// no mass, and the choice is made anew without it.
+/// Noise of a pose in contact looks like a small mass at the tip, and bone that is softer one way like a sensor that drifts.
+/// A mass and a drift act in free air, too: what is not seen there is neither, and the choice is made anew without it.
 void Selection::require_free_air() {
   if (residual_.problem().in_free_air(0).empty()) return;
   for (bool dropped = true; dropped;) {
@@ -281,7 +287,9 @@ void Selection::require_free_air() {
     for (const std::string& id : Structure(chosen().structure).effects) {
       const Structure less = minus(chosen().structure, id);
       part(Solution(chosen()), less);
-      const auto shown = share_in_free_air(residual_, chosen(), tried_.at(name(less)));
+      const auto shown = share_in_free_air(
+          residual_, chosen(), tried_.at(name(less)),
+          is_free_per_trial(residual_.problem(), id) ? 0.0 : kSettings.free_air.least_share);
       if (!shown || *shown >= kSettings.free_air.least_shown) continue;
       unseen_in_air_.insert(id);
       choose();
