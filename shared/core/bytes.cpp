@@ -40,10 +40,6 @@ std::optional<Bytes> base64_decoded(std::string_view text, int variant) {
 }
 }  // namespace
 
-struct Sha256::State {
-  crypto_hash_sha256_state sodium;
-};
-
 std::uint32_t crc32c(ByteView bytes, std::uint32_t seed) noexcept {
   std::uint64_t crc = ~seed;
   while (bytes.size() >= 8) {
@@ -55,25 +51,6 @@ std::uint32_t crc32c(ByteView bytes, std::uint32_t seed) noexcept {
   for (const std::byte b : bytes)
     crc = _mm_crc32_u8(static_cast<std::uint32_t>(crc), std::to_integer<std::uint8_t>(b));
   return ~static_cast<std::uint32_t>(crc);
-}
-
-Sha256::Sha256() : state_(std::make_unique<State>()) { crypto_hash_sha256_init(&state_->sodium); }
-Sha256::~Sha256() = default;
-Sha256::Sha256(Sha256&&) noexcept = default;
-Sha256& Sha256::operator=(Sha256&&) noexcept = default;
-void Sha256::add(ByteView part) noexcept {
-  crypto_hash_sha256_update(&state_->sodium, raw_bytes(part), part.size());
-}
-std::string Sha256::hex() {
-  std::array<std::byte, crypto_hash_sha256_BYTES> digest{};
-  crypto_hash_sha256_final(&state_->sodium, reinterpret_cast<unsigned char*>(digest.data()));
-  return core::hex(digest);
-}
-
-std::string sha256(ByteView bytes) {
-  Sha256 hash;
-  hash.add(bytes);
-  return hash.hex();
 }
 
 bool is_sha256(std::string_view text) noexcept { return text.size() == 64 && all_hex(text); }
