@@ -19,6 +19,7 @@ namespace {
 static_assert(std::endian::native == std::endian::little, "the file's numbers are little-endian");
 
 constexpr std::size_t kMaxLine = 400;  // characters of a message
+constexpr std::size_t kReadAhead_bytes = 64 << 10;
 
 template <class T>
 void put(std::byte* at, T value) {
@@ -136,15 +137,28 @@ core::Error FrameReader::corrupt(const std::string& what) const {
   return frame_error(core::Errc::corrupt, path_, offset_, what);
 }
 
+/// Reads the next piece of the file once everything read ahead is taken.
+core::Result<void> FrameReader::fill() {
+  read_ahead_.resize(kReadAhead_bytes);
+  ssize_t n = -1;
+  do n = ::read(file_.fd(), read_ahead_.data(), read_ahead_.size());
+  while (n < 0 && errno == EINTR);
+  read_ahead_.resize(n > 0 ? static_cast<std::size_t>(n) : 0);
+  taken_ = 0;
+  if (n < 0) return core::system_error(path_, "cannot read");
+  if (n == 0) return corrupt("the file was cut while it was read");
+  return {};
+}
+
 core::Result<void> FrameReader::read(std::byte* into, std::size_t count) {
   while (count > 0) {
-    const ssize_t n = ::read(file_.fd(), into, count);
-    if (n < 0 && errno == EINTR) continue;
-    if (n < 0) return core::system_error(path_, "cannot read");
-    if (n == 0) return corrupt("the file was cut while it was read");
-    into += n;
-    count -= static_cast<std::size_t>(n);
-    position_ += static_cast<std::uint64_t>(n);
+    if (taken_ == read_ahead_.size()) TRY(fill());
+    const std::size_t part = std::min(count, read_ahead_.size() - taken_);
+    std::memcpy(into, read_ahead_.data() + taken_, part);
+    taken_ += part;
+    into += part;
+    count -= part;
+    position_ += part;
   }
   return {};
 }

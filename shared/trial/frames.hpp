@@ -96,6 +96,7 @@ class FrameReader {
  private:
   FrameReader(std::filesystem::path path, Descriptor file, std::uint64_t size);
   core::Result<void> read(std::byte* into, std::size_t count);
+  core::Result<void> fill();
   core::Result<Step> rest_of_zeros();
   core::Error corrupt(const std::string& what) const;
 
@@ -105,6 +106,8 @@ class FrameReader {
   std::uint32_t sequence_ = 0;
   bool may_pack_ = true;
   FrameType type_{};
+  core::Bytes read_ahead_;  ///< bytes of the file that are not taken yet, from taken_ on
+  std::size_t taken_ = 0;
   core::Bytes payload_;
   core::Sha256 hash_;
 };

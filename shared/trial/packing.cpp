@@ -87,10 +87,6 @@ class Bits {
     for (std::size_t i = 0; i < count_; ++i)
       std::memcpy(&bits_[i + 2], samples + i * stride + offset, sizeof(T));
   }
-  void scatter(std::byte* samples, std::size_t stride, std::size_t offset) const {
-    for (std::size_t i = 0; i < count_; ++i)
-      std::memcpy(samples + i * stride + offset, &bits_[i + 2], sizeof(T));
-  }
 
  private:
   T* bits_;
@@ -136,30 +132,41 @@ void pack_column(const std::byte* samples, std::size_t count, std::size_t stride
     for (std::size_t i = 0; i < count; ++i) planes[i] = static_cast<std::byte>(r[i] >> (8 * byte));
 }
 
+/// One number from its bytes, which are `count` apart.
+template <class T>
+T word_of(const std::byte* planes, std::size_t count) {
+  T out = 0;
+  for (std::size_t byte = 0; byte < sizeof(T); ++byte)
+    out = static_cast<T>(out | static_cast<T>(static_cast<T>(planes[byte * count]) << (8 * byte)));
+  return out;
+}
+
+template <class T>
+T load(const std::byte* from) {
+  T out;
+  std::memcpy(&out, from, sizeof out);
+  return out;
+}
+
 template <class T>
 void unpack_column(const std::byte* planes, std::size_t count, std::size_t stride,
-                   const Column& column, const Before& before, Rooms& rooms, std::byte* samples) {
-  Bits<T> bits(rooms.values, count), rest(rooms.rests, count);
-  T* r = rest.values();
-  std::fill_n(r, count, T{0});
-  for (std::size_t byte = 0; byte < sizeof(T); ++byte, planes += count)
-    for (std::size_t i = 0; i < count; ++i)
-      r[i] = static_cast<T>(r[i] | static_cast<T>(static_cast<T>(planes[i]) << (8 * byte)));
-  T* x = bits.values();
+                   const Column& column, const Before& before, std::byte* samples) {
+  std::byte* x = samples + column.offset;
   if (column.after != kNone) {
-    Bits<T> other(rooms.others, count);
-    other.gather(samples, stride, column.after);
-    const T* o = other.values();
-    for (std::size_t i = 0; i < count; ++i) x[i] = static_cast<T>(unfolded(r[i]) + o[i]);
-  } else {
-    bits.begin_with(before, column.offset);
-    T last = x[-1], step = static_cast<T>(x[-1] - x[-2]);
-    for (std::size_t i = 0; i < count; ++i) {
-      step = static_cast<T>(step + unfolded(r[i]));
-      x[i] = last = static_cast<T>(last + step);
+    const std::byte* other = samples + column.after;
+    for (std::size_t i = 0; i < count; ++i, x += stride, other += stride) {
+      const T value = static_cast<T>(unfolded(word_of<T>(planes + i, count)) + load<T>(other));
+      std::memcpy(x, &value, sizeof value);
     }
+    return;
   }
-  bits.scatter(samples, stride, column.offset);
+  T last = load<T>(before[1].data() + column.offset);
+  T step = static_cast<T>(last - load<T>(before[0].data() + column.offset));
+  for (std::size_t i = 0; i < count; ++i, x += stride) {
+    step = static_cast<T>(step + unfolded(word_of<T>(planes + i, count)));
+    last = static_cast<T>(last + step);
+    std::memcpy(x, &last, sizeof last);
+  }
 }
 
 /// `work` with the column's word as its type.
@@ -256,7 +263,7 @@ core::Result<void> Packer::unpack_of(core::ByteView payload, std::vector<S>& out
   const std::byte* at = s.planes.data();
   for (const Column& column : Columns<S>::kAll) {
     by_width(column, [&](auto word) {
-      unpack_column<decltype(word)>(at, count, sizeof(S), column, s.before, s.rooms, bytes);
+      unpack_column<decltype(word)>(at, count, sizeof(S), column, s.before, bytes);
     });
     at += column.bytes * count;
   }
