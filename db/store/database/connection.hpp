@@ -65,8 +65,9 @@ core::Result<std::unique_ptr<Connection>> open_sqlite(const std::filesystem::pat
 
 /// A connection to a PostgreSQL database by its address (postgresql://…, or libpq's words); made at
 /// the first `begin`, and again when it broke. What the address leaves out, libpq takes from the
-/// environment and PGPASSFILE. Reading is one unchanging state, READ ONLY. Errors come from
-/// `begin`: unavailable; bad_input (an address it cannot read, a database that is not UTF-8).
+/// environment and PGPASSFILE. Reading is one unchanging state, READ ONLY; it begins with its
+/// first statement, in one round trip. Errors come from `begin`, or from that statement:
+/// unavailable; bad_input (an address it cannot read, a database that is not UTF-8).
 std::unique_ptr<Connection> postgres_connection(const std::string& address, Access access);
 /// Whether an address contains a password, so that the address must not be shown. False for an
 /// invalid address.

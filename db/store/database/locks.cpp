@@ -1,5 +1,7 @@
 #include "db/store/database/locks.hpp"
 
+#include <fmt/format.h>
+
 #include <array>
 #include <chrono>
 #include <mutex>
@@ -93,8 +95,7 @@ class PostgresLocks final : public Locks {
   void unlock(std::int64_t key, unsigned session) {
     const std::lock_guard held(mutex_);
     if (!link_.connected() || link_.session() != session) return;  // went with its session
-    const std::vector<Value> values{key};
-    (void)bool(link_.query("select pg_advisory_unlock(?)", values));
+    link_.send_off(fmt::format("select pg_advisory_unlock({})", key));
   }
 
   Stripes stripes_;

@@ -30,7 +30,9 @@ class Postgres final : public Connection {
   }
 
   core::Result<void> begin(Access access) override {
-    const std::string words = beginning(most_ == Access::read ? Access::read : access);
+    reads_ = most_ == Access::read || access == Access::read;
+    const std::string words = beginning(reads_ ? Access::read : access);
+    if (reads_) return link_.begin_with_next(words), core::Result<void>();
     core::Result<std::string> begun =
         core::Error{core::Errc::unavailable, "PostgreSQL: the transaction could not begin"};
     // A connection that broke while nobody looked is only found out by using it.
@@ -46,6 +48,10 @@ class Postgres final : public Connection {
   }
 
   core::Result<void> commit() override {
+    if (reads_) {  // it changed nothing: no answer is waited for
+      if (!link_.forget_beginning()) link_.send_off("commit");
+      return {};
+    }
     auto done = TRY(link_.script("commit"));
     // A transaction in which a statement failed answers COMMIT with ROLLBACK, as a success.
     if (done == "COMMIT") return {};
@@ -70,6 +76,7 @@ class Postgres final : public Connection {
   }
 
   void rollback() noexcept override {
+    link_.forget_beginning();
     if (link_.in_transaction()) (void)bool(link_.script("rollback"));
   }
 
@@ -103,6 +110,7 @@ class Postgres final : public Connection {
 
   PostgresLink link_;
   Access most_;
+  bool reads_ = false;  ///< the transaction that began last
 };
 
 }  // namespace

@@ -212,7 +212,7 @@ core::Result<void> PostgresLink::set_up() {
   }
   // Who waits for a lock, or stops in the middle of a transaction, does not do so for ever; a
   // commit is on the disk when it is answered, whatever the server's default is.
-  TRY(script(
+  TRY(execute(
       "set lock_timeout = '10s'; set idle_in_transaction_session_timeout = '60s'; "
       "select set_config('synchronous_commit', 'on', false) "
       "where current_setting('synchronous_commit') = 'off'; "
@@ -248,45 +248,103 @@ core::Result<std::string> PostgresLink::prepared(std::string_view sql,
   return name;
 }
 
-core::Result<void> PostgresLink::each(std::string_view sql, std::span<const Value> values,
-                                      const std::function<core::Result<void>(Row)>& seen) {
-  if (!connected()) return core::Error{core::Errc::unavailable, "PostgreSQL: the connection broke"};
-  auto name = TRY(prepared(sql, values));
-  std::vector<Bound> bound(values.size());
-  std::vector<const char*> data;
-  std::vector<int> sizes, formats(values.size(), kBinary);
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    bound[i].set(values[i]);
-    data.push_back(bound[i].data);
-    sizes.push_back(bound[i].size);
-  }
-  if (PQsendQueryPrepared(connection_.get(), name.c_str(), static_cast<int>(values.size()),
-                          data.data(), sizes.data(), formats.data(), kBinary) != 1)
-    return failure(nullptr);
-  PQsetSingleRowMode(connection_.get());
-  return take_rows(seen);
-}
-
-core::Result<void> PostgresLink::take_rows(const std::function<core::Result<void>(Row)>& seen) {
-  core::Result<void> outcome;
-  while (const Result result{PQgetResult(connection_.get())}) {
-    const ExecStatusType status = PQresultStatus(result.get());
-    if (!outcome) continue;  // the rest of a failed answer is taken off the line
-    if (status == PGRES_SINGLE_TUPLE) {
-      std::vector<Value> values;
-      for (int i = 0; i < PQnfields(result.get()) && outcome; ++i) {
-        auto value = column(result.get(), i);
-        if (value)
-          values.push_back(std::move(*value));
-        else
-          outcome = value.error();
-      }
-      if (outcome) outcome = seen(Row(std::move(values)));
-    } else if (status != PGRES_TUPLES_OK && status != PGRES_COMMAND_OK) {
-      outcome = failure(result.get());
+/// The values of a statement as libpq takes them.
+struct PostgresLink::Arguments {
+  explicit Arguments(std::span<const Value> values)
+      : bound(values.size()), formats(values.size(), kBinary) {
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      bound[i].set(values[i]);
+      data.push_back(bound[i].data);
+      sizes.push_back(bound[i].size);
     }
   }
+  bool send(pg_conn* connection, const std::string& name) const {
+    return PQsendQueryPrepared(connection, name.c_str(), static_cast<int>(bound.size()),
+                               data.data(), sizes.data(), formats.data(), kBinary) == 1;
+  }
+  std::vector<Bound> bound;
+  std::vector<const char*> data;
+  std::vector<int> sizes, formats;
+};
+
+core::Result<void> PostgresLink::each(std::string_view sql, std::span<const Value> values,
+                                      const Seen& seen) {
+  if (beginning_.empty()) return run(sql, values, seen);
+  // A connection that broke while nobody looked is only found out by using it.
+  for (int tries = 0;; ++tries) {
+    const bool fresh = !connected();
+    core::Result<void> outcome = connect();
+    bool any = false;
+    if (outcome)
+      outcome =
+          begin_and_run(sql, values, [&](Row row) { return any = true, seen(std::move(row)); });
+    if (outcome || fresh || any || connected() || tries > 0) return forget_beginning(), outcome;
+  }
+}
+
+core::Result<void> PostgresLink::run(std::string_view sql, std::span<const Value> values,
+                                     const Seen& seen) {
+  settle();
+  if (!connected()) return core::Error{core::Errc::unavailable, "PostgreSQL: the connection broke"};
+  auto name = TRY(prepared(sql, values));
+  if (!Arguments(values).send(connection_.get(), name)) return failure(nullptr);
+  PQsetSingleRowMode(connection_.get());
+  core::Result<void> outcome;
+  while (const Result result{PQgetResult(connection_.get())})
+    if (outcome) outcome = take(result.get(), seen);  // else the rest is taken off the line
   return outcome;
+}
+
+/// By libpq's pipeline mode (PostgreSQL's manual, 34.5): both are sent, then both are answered.
+core::Result<void> PostgresLink::begin_and_run(std::string_view sql, std::span<const Value> values,
+                                               const Seen& seen) {
+  settle();
+  auto name = TRY(prepared(sql, values));
+  pg_conn* line = connection_.get();
+  if (PQenterPipelineMode(line) != 1 ||
+      PQsendQueryParams(line, beginning_.c_str(), 0, nullptr, nullptr, nullptr, nullptr, kBinary) !=
+          1 ||
+      !Arguments(values).send(line, name) || PQpipelineSync(line) != 1) {
+    const core::Error error{core::Errc::unavailable, failure(nullptr).what};
+    connection_.reset();  // half of it may be on its way
+    return error;
+  }
+  core::Result<void> outcome;
+  for (int answered = 0; connected();) {
+    const Result result(PQgetResult(line));
+    if (!result && ++answered == 1) PQsetSingleRowMode(line);  // of the one that comes now
+    if (!result) continue;
+    if (PQresultStatus(result.get()) == PGRES_PIPELINE_SYNC) break;
+    if (outcome) outcome = take(result.get(), seen);
+  }
+  if (outcome && !connected()) return failure(nullptr);
+  if (connected()) PQexitPipelineMode(line);
+  return outcome;
+}
+
+/// One answer: a row, the end of the rows, or what was wrong.
+core::Result<void> PostgresLink::take(const pg_result* result, const Seen& seen) {
+  const ExecStatusType status = PQresultStatus(result);
+  if (status == PGRES_TUPLES_OK || status == PGRES_COMMAND_OK) return {};
+  if (status != PGRES_SINGLE_TUPLE) return failure(result);
+  std::vector<Value> values;
+  for (int i = 0; i < PQnfields(result); ++i) {
+    auto value = TRY(column(result, i));
+    values.push_back(std::move(value));
+  }
+  return seen(Row(std::move(values)));
+}
+
+void PostgresLink::send_off(const std::string& sql) {
+  settle();
+  if (connected()) PQsendQuery(connection_.get(), sql.c_str());
+}
+
+/// Takes the answers to what was sent off.
+void PostgresLink::settle() {
+  if (!connected()) return;
+  while (const Result result{PQgetResult(connection_.get())}) {
+  }
 }
 
 core::Result<Rows> PostgresLink::query(std::string_view sql, std::span<const Value> values) {
@@ -299,6 +357,13 @@ core::Result<Rows> PostgresLink::query(std::string_view sql, std::span<const Val
 }
 
 core::Result<std::string> PostgresLink::script(const std::string& sql) {
+  if (beginning_.empty()) return execute(sql);
+  TRY(connect());
+  return execute(std::exchange(beginning_, {}) + "; " + sql);
+}
+
+core::Result<std::string> PostgresLink::execute(const std::string& sql) {
+  settle();
   if (!connected()) return core::Error{core::Errc::unavailable, "PostgreSQL: the connection broke"};
   const Result result(PQexec(connection_.get(), sql.c_str()));
   const ExecStatusType status = PQresultStatus(result.get());

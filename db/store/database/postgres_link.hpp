@@ -9,6 +9,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/result.hpp"
@@ -40,6 +41,13 @@ class PostgresLink {
   core::Result<Rows> query(std::string_view sql, std::span<const Value> values);
   /// Statements as they are; the answer is the last one's tag, as "COMMIT".
   core::Result<std::string> script(const std::string& sql);
+  /// Sends this statement with the next one, in one round trip. That one connects if need be, and
+  /// again if the connection turns out to be broken.
+  void begin_with_next(std::string sql) { beginning_ = std::move(sql); }
+  /// Whether it waits for the next one still; forgets it.
+  bool forget_beginning() { return !std::exchange(beginning_, {}).empty(); }
+  /// Sends this statement and waits for no answer: for one whose failure changes nothing.
+  void send_off(const std::string& sql);
   bool in_transaction() const;
 
   struct Notification {
@@ -58,13 +66,21 @@ class PostgresLink {
 
   core::Result<void> set_up();
   core::Result<std::string> prepared(std::string_view sql, std::span<const Value> values);
-  core::Result<void> take_rows(const std::function<core::Result<void>(Row)>& seen);
+  using Seen = std::function<core::Result<void>(Row)>;
+  struct Arguments;
+  core::Result<void> run(std::string_view sql, std::span<const Value> values, const Seen& seen);
+  core::Result<void> begin_and_run(std::string_view sql, std::span<const Value> values,
+                                   const Seen& seen);
+  core::Result<void> take(const pg_result* result, const Seen& seen);
+  core::Result<std::string> execute(const std::string& sql);
+  void settle();
   core::Error failure(const pg_result* result) const;
 
   std::string address_;
   std::unique_ptr<pg_conn, Closer> connection_;
   std::map<std::string, std::string, std::less<>> statements_;  ///< types and text → name
   unsigned session_ = 0;
+  std::string beginning_;  ///< goes with the next statement
 };
 
 /// A statement as PostgreSQL reads it: `?` outside of quotes becomes $1, $2, …, and what stands in

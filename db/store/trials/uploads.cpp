@@ -1,6 +1,7 @@
 #include "db/store/trials/uploads.hpp"
 
 #include "core/try.hpp"
+#include "db/store/people/erasure.hpp"
 #include "db/store/rows.hpp"
 
 namespace tractus {
@@ -19,6 +20,16 @@ core::Result<Upload> upload_from(const Row& row) {
 
 core::Result<std::optional<Upload>> upload_of(Reading& tx, const std::string& trial_id) {
   return one_of(tx.query(std::string(kUpload) + "where trial_id = ?", {trial_id}), upload_from);
+}
+
+core::Result<std::optional<Upload>> staying_upload_of(Reading& tx, const std::string& trial_id) {
+  const auto rows = TRY(
+      tx.query("select trial_id, station_id, case_id, size_bytes, sha256, state, (select count(*) "
+               "from erased_trials e where e.trial_id = uploads.trial_id) from uploads "
+               "where trial_id = ?",
+               {trial_id}));
+  if (rows.empty() || rows.front().count(6) > 0) TRY(check_trial_stays(tx, trial_id));
+  return one_of(core::Result<Rows>(rows), upload_from);
 }
 
 core::Result<std::vector<Upload>> open_uploads(Reading& tx) {

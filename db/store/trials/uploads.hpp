@@ -21,6 +21,8 @@ struct Upload {
 };
 
 core::Result<std::optional<Upload>> upload_of(Reading& tx, const std::string& trial_id);
+/// The same by one statement; for a trial whose person has left the error of check_trial_stays.
+core::Result<std::optional<Upload>> staying_upload_of(Reading& tx, const std::string& trial_id);
 /// All that are still receiving.
 core::Result<std::vector<Upload>> open_uploads(Reading& tx);
 /// Those of them that were announced after `utc_us`.

@@ -78,11 +78,8 @@ core::Error unknown(const std::string& trial_id) {
 core::Result<store::Upload> own_upload(Backend& backend, const Caller& station,
                                        const std::string& trial_id) {
   if (!core::is_id(trial_id)) return unknown(trial_id);
-  using Known = std::optional<store::Upload>;
-  auto upload = TRY(backend.store.read([&](store::Reading& tx) -> core::Result<Known> {
-    TRY(store::check_trial_stays(tx, trial_id));
-    return store::upload_of(tx, trial_id);
-  }));
+  auto upload = TRY(backend.store.read(
+      [&](store::Reading& tx) { return store::staying_upload_of(tx, trial_id); }));
   if (!upload || upload->station_id != station.id) return unknown(trial_id);
   return std::move(*upload);
 }
@@ -174,9 +171,8 @@ core::Result<wire::UploadState> announce_upload(Backend& backend, const Caller& 
 
 core::Result<wire::UploadState> upload_state(Backend& backend, const Caller& station,
                                              const std::string& trial_id) {
-  TRY(own_upload(backend, station, trial_id));
-  const auto held = hold_upload(backend, trial_id);  // no piece is half on its way
-  if (!held) return held.error();
+  if (!core::is_id(trial_id)) return unknown(trial_id);
+  const auto held = TRY(hold_upload(backend, trial_id));  // no piece is half on its way
   auto upload = TRY(own_upload(backend, station, trial_id));
   return state_of(backend, upload);
 }
@@ -184,9 +180,7 @@ core::Result<wire::UploadState> upload_state(Backend& backend, const Caller& sta
 core::Result<Appended> append_upload(Backend& backend, const Caller& station,
                                      const std::string& trial_id, std::uint64_t offset_bytes,
                                      std::uint32_t crc32c, core::ByteView bytes) {
-  auto first =
-      own_upload(backend, station, trial_id);  // before the lock: others' ids wait for nothing
-  if (!first) return first.error();
+  if (!core::is_id(trial_id)) return unknown(trial_id);
   const auto held = TRY(hold_upload(backend, trial_id));
   auto upload = TRY(own_upload(backend, station, trial_id));
   if (upload.state != store::UploadPhase::receiving)
@@ -209,7 +203,7 @@ core::Result<Appended> append_upload(Backend& backend, const Caller& station,
 core::Result<wire::UploadState> commit_upload(Backend& backend, const Caller& station,
                                               const std::string& trial_id,
                                               const std::string& traceparent) {
-  TRY(own_upload(backend, station, trial_id));
+  if (!core::is_id(trial_id)) return unknown(trial_id);
   const auto held = TRY(hold_upload(backend, trial_id));
   auto upload = TRY(own_upload(backend, station, trial_id));
   if (upload.state == store::UploadPhase::complete) return state_of(backend, upload);

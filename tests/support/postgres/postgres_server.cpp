@@ -141,8 +141,8 @@ void PostgresServer::start() {
   }
   pid_ = spawn(words, user_, group_, folder_ / "server.log");
   for (int tries = 0; tries < 600; ++tries) {
-    auto connection = store::postgres_connection(address(), store::Access::read);
-    if (connection->begin(store::Access::read)) return;
+    auto connection = store::postgres_connection(address(), store::Access::beside);
+    if (connection->begin(store::Access::beside)) return;
     if (::waitpid(pid_, nullptr, WNOHANG) == pid_) break;
     std::this_thread::sleep_for(std::chrono::milliseconds(50));
   }
