@@ -25,7 +25,7 @@ namespace jobs {
 namespace {
 using store::JobKind;
 constexpr std::uint64_t kMostAttempts = 3;  // of what is not a score
-constexpr int kLabNiceness = 10;
+constexpr int kScoreNiceness = 5, kLabNiceness = 10;
 
 /// What a person sees of a job that failed.
 core::Result<void> show_failure(store::Writing& tx, const store::Job& job,
@@ -75,13 +75,11 @@ Runner::Runner(store::Store& store, const store::Objects& objects, Keys keys, Lo
       log_(std::move(log)),
       worker_{core::new_id(), std::chrono::microseconds(lease).count()},
       tracer_(tracer) {
-  scores_.thread = std::thread([this] { run(scores_); });
+  // Of the calling thread and those it starts alone. Refused, it only runs as fast as the rest.
+  const auto be_nice = [](int niceness) { (void)setpriority(PRIO_PROCESS, 0, niceness); };
+  scores_.thread = std::thread([this, be_nice] { be_nice(kScoreNiceness), run(scores_); });
   cases_.thread = std::thread([this] { run(cases_); });
-  lab_.thread = std::thread([this] {
-    // Of this thread and those it starts alone. Refused, the lab only runs as fast as the rest.
-    (void)setpriority(PRIO_PROCESS, 0, kLabNiceness);
-    run(lab_);
-  });
+  lab_.thread = std::thread([this, be_nice] { be_nice(kLabNiceness), run(lab_); });
   keeper_ = std::thread([this] { keep(); });
 }
 

@@ -148,7 +148,14 @@ core::Result<uplink::UploadReport> hand_over(const Options& options,
   PatientClock clock;
   uplink::Patience patience;
   patience.give_up_after_ns = static_cast<core::Instant_ns>(options.wait_s * 1e9);
-  return uplink::upload_all(*server, folder.outbox(), folder.trials(), clock, patience,
+  std::vector<std::unique_ptr<uplink::Server>> more;
+  std::vector<uplink::Server*> connections{server.get()};
+  while (connections.size() < uplink::kUploadConnections) {
+    auto another = TRY(connect(options));
+    connections.push_back(another.get());
+    more.push_back(std::move(another));
+  }
+  return uplink::upload_all(connections, folder.outbox(), folder.trials(), clock, patience,
                             stoppable(core::terminal_progress("Upload")), offset, tracer());
 }
 

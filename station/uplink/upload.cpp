@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <fstream>
 
-#include "core/errc_words.hpp"
 #include "core/try.hpp"
 #include "wire/messages.hpp"
 
@@ -108,65 +107,20 @@ std::string note_of(const std::optional<ClockOffset>& offset) {
       .dump();
 }
 
-bool later_helps(core::Errc code) {  // worth trying again later
-  return code == core::Errc::unavailable || code == core::Errc::cancelled ||
-         code == core::Errc::io || code == core::Errc::too_large;
-}
-
-/// A trial's upload as a trace: a span for all its tries, and one for each request, which says to
-/// the server whose child its own is.
-class TracedServer final : public Server {
- public:
-  TracedServer(Server& server, tracing::Tracer* tracer, const OutboxEntry& entry)
-      : server_(server),
-        tracer_(tracer),
-        trial_id_(entry.trial_id),
-        span_(tracer, "upload trial", tracing::SpanKind::internal, std::nullopt) {
-    span_.set("tractus.trial.size_bytes", entry.size_bytes);
-  }
-  core::Result<HttpResponse> send(const Request& request) override {
-    if (!tracer_) return server_.send(request);
-    tracing::Span span(tracer_, request.method + " " + pattern_of(request.path),
-                       tracing::SpanKind::client, span_.context());
-    Request sent = request;
-    sent.headers.emplace_back("traceparent", span.traceparent());
-    auto answer = server_.send(sent);
-    span.set("http.request.method", request.method);
-    span.set("http.request.body.size", request.body.size());
-    if (answer) span.set("http.response.status_code", answer->status);
-    if (!answer) span.set_failed(std::string(core::name(answer.error().code)));
-    if (answer && answer->status >= 400) span.set_failed(std::to_string(answer->status));
-    return answer;
-  }
-  void note(const core::Result<void>& outcome) {
-    span_.set_failed(outcome ? "" : std::string(core::name(outcome.error().code)));
-  }
-
- private:
-  /// Without the trial's id and the query.
-  std::string pattern_of(const std::string& path) const {
-    std::string out = path.substr(0, path.find('?'));
-    if (const auto at = out.find(trial_id_); at != std::string::npos)
-      out.replace(at, trial_id_.size(), "{trial_id}");
-    return out;
-  }
-
-  Server& server_;
-  tracing::Tracer* tracer_;
-  const std::string trial_id_;
-  tracing::Span span_;
-};
 }  // namespace
 
 core::Result<void> upload_trial(Server& server, const fs::path& trial_file, OutboxEntry& entry,
                                 const core::Progress& progress,
-                                const std::optional<ClockOffset>& offset) {
+                                const std::optional<ClockOffset>& offset,
+                                const std::function<bool()>& may_commit) {
   const std::string path = "/api/v1/uploads/" + entry.trial_id;
   auto state = TRY(announce(server, path, entry));
   if (state.offset_bytes > entry.size_bytes) return confused(entry, state.offset_bytes);
   entry.offset_bytes = state.offset_bytes;
   if (state.state != trial::UploadPhase::complete) {
     TRY(send_rest(server, path, trial_file, entry, progress));
+    if (may_commit && !may_commit())
+      return core::Error{core::Errc::cancelled, "an older trial waits for the server"};
     const std::string note = note_of(offset);
     const Request request{.method = "POST",
                           .path = path + "/commit",
@@ -181,53 +135,6 @@ core::Result<void> upload_trial(Server& server, const fs::path& trial_file, Outb
   entry.offset_bytes = entry.size_bytes;
   entry.state = OutboxState::complete;
   return {};
-}
-
-core::Json UploadReport::to_json() const {
-  return {{"handed_over", handed_over}, {"refused", refused}, {"waiting", waiting}, {"why", why}};
-}
-
-core::Result<UploadReport> upload_all(Server& server, const Outbox& outbox,
-                                      const fs::path& trials_folder, core::Clock& clock,
-                                      const Patience& patience, const core::Progress& progress,
-                                      const std::optional<ClockOffset>& offset,
-                                      tracing::Tracer* tracer) {
-  auto entries = TRY(outbox.entries());
-  std::erase_if(entries,
-                [](const OutboxEntry& entry) { return entry.state != OutboxState::queued; });
-  UploadReport report;
-  core::Instant_ns wait = patience.first_wait_ns, last_progress = clock.now();
-  std::optional<TracedServer> traced;
-  for (std::size_t i = 0; i < entries.size();) {
-    OutboxEntry& entry = entries[i];
-    if (!traced) traced.emplace(server, tracer, entry);
-    const std::uint64_t before = entry.offset_bytes;
-    const auto outcome = upload_trial(*traced, trials_folder / (entry.trial_id + ".ttrial"), entry,
-                                      progress, offset);
-    traced->note(outcome);
-    if (!outcome && outcome.error().code == core::Errc::unauthorised) return outcome.error();
-    const bool later = !outcome && later_helps(outcome.error().code);
-    if (!outcome && !later) entry.state = OutboxState::refused, entry.reason = outcome.error().what;
-    TRY(outbox.write(entry));
-    if (entry.offset_bytes > before || !later)
-      last_progress = clock.now(), wait = patience.first_wait_ns;
-    if (!later) {
-      ++(outcome ? report.handed_over : report.refused);
-      traced.reset();
-      ++i;
-      continue;
-    }
-    report.why = outcome.error().what;
-    if (outcome.error().code == core::Errc::cancelled ||
-        clock.now() - last_progress >= patience.give_up_after_ns) {
-      report.waiting = static_cast<int>(entries.size() - i);
-      return report;
-    }
-    clock.sleep_until(clock.now() + wait);
-    wait = std::min(2 * wait, patience.longest_wait_ns);
-  }
-  report.why.clear();
-  return report;
 }
 
 }  // namespace uplink

@@ -17,9 +17,11 @@ namespace tractus::uplink {
 /// server holds is not sent again. Errors: the server's, unavailable, corrupt (the file is not what
 /// was queued).
 /// @param offset  this station's clock, noted with the trial
+/// @param may_commit  asked once the server has every piece; false: the trial waits (cancelled)
 core::Result<void> upload_trial(Server& server, const std::filesystem::path& trial_file,
                                 OutboxEntry& entry, const core::Progress& progress = {},
-                                const std::optional<ClockOffset>& offset = {});
+                                const std::optional<ClockOffset>& offset = {},
+                                const std::function<bool()>& may_commit = {});
 
 struct UploadReport {
   int handed_over = 0;  ///< now
@@ -36,11 +38,19 @@ struct Patience {
   core::Instant_ns give_up_after_ns = 0;  ///< since the last progress; 0: at the first failure
 };
 
+/// How many trials of a backlog are on their way at a time, as many as a server has threads for
+/// requests: while one is committed, which waits for the disk, others send their pieces (ADR-0065).
+inline constexpr std::size_t kUploadConnections = 4;
+
 /// Everything queued, oldest first, order kept: when the server does not answer, nothing younger
-/// goes before. Waits between tries double. Nothing is ever deleted. Errors: io and bad_input of
-/// the outbox, unauthorised. That the server does not answer is no Error but `waiting`.
+/// is committed before. Waits between tries double. Nothing is ever deleted. Errors: io and
+/// bad_input of the outbox, unauthorised. That the server does not answer is no Error but
+/// `waiting`.
+/// @param connections  to the same server, at least one: as many trials send their pieces at a
+///                     time; each is committed after all older ones
+/// @param progress  called by one thread at a time, of several
 /// @param tracer  each trial is a trace, with all its requests; null: none
-core::Result<UploadReport> upload_all(Server& server, const Outbox& outbox,
+core::Result<UploadReport> upload_all(const std::vector<Server*>& connections, const Outbox& outbox,
                                       const std::filesystem::path& trials_folder,
                                       core::Clock& clock, const Patience& patience,
                                       const core::Progress& progress = {},

@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 #include <stdlib.h>
 
+#include <condition_variable>
+#include <mutex>
 #include <set>
 
 #include "core/file.hpp"
@@ -44,7 +46,7 @@ class Uploading : public testing::Test {
   }
   fs::path trials() const { return root_ / "trials"; }
   core::Result<UploadReport> upload(Server& server, core::Instant_ns patience_ns = 0) {
-    return upload_all(server, *outbox_, trials(), clock_, {.give_up_after_ns = patience_ns});
+    return upload_all({&server}, *outbox_, trials(), clock_, {.give_up_after_ns = patience_ns});
   }
   void expect_handed_over_once(const DoubleServer& server) {
     for (const auto& [id, bytes] : bytes_) {
@@ -98,7 +100,7 @@ TEST_F(Uploading, EachTrialIsATraceWhichItsRequestsName) {
           return sent += body, tracing::Delivered{tracing::Delivery::taken};
         },
         [](const std::string&) {});
-    ASSERT_TRUE(upload_all(noting, *outbox_, trials(), clock_, {}, {}, {}, &tracer));
+    ASSERT_TRUE(upload_all({&noting}, *outbox_, trials(), clock_, {}, {}, {}, &tracer));
   }
   std::set<std::string> traces, spans;
   for (const std::string& header : noting.headers) {
@@ -212,6 +214,113 @@ TEST_F(Uploading, DoesNotBelieveAServerWithAnImpossibleOffset) {
   const auto report = upload(liar);
   ASSERT_TRUE(report);
   EXPECT_EQ(report->waiting, 2);
+}
+
+/// One server behind several connections. A piece of the first trial but its first waits until the
+/// second trial is announced, if need be for `patience`.
+class Shared {
+ public:
+  class Connection final : public Server {
+   public:
+    explicit Connection(Shared& shared) : shared_(shared) {}
+    core::Result<HttpResponse> send(const Request& request) override {
+      return shared_.send(request);
+    }
+
+   private:
+    Shared& shared_;
+  };
+  explicit Shared(std::chrono::seconds patience = {}) : patience_(patience) {}
+  std::vector<Server*> connections() {
+    std::vector<Server*> out;
+    for (Connection& one : all_) out.push_back(&one);
+    return out;
+  }
+  std::vector<std::string> committed() const {
+    std::vector<std::string> out;
+    for (const std::string& line : server.log)
+      if (line.ends_with("/commit"))
+        out.push_back(line.substr(std::size("POST /api/v1/uploads"), 32));
+    return out;
+  }
+  DoubleServer server;
+  bool side_by_side = true;
+
+ private:
+  core::Result<HttpResponse> send(const Request& request) {
+    std::unique_lock held(mutex_);
+    announced_.insert(request.path.substr(std::size("/api/v1/uploads"), 32));
+    changed_.notify_all();
+    const bool later_piece = request.method == "PATCH" && !request.path.ends_with("offset_bytes=0");
+    if (later_piece && patience_.count() > 0)
+      side_by_side = side_by_side && changed_.wait_for(held, patience_, [&] {
+        return announced_.contains(kSecond);
+      });
+    return server.send(request);
+  }
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  std::set<std::string> announced_;
+  std::chrono::seconds patience_;
+  std::array<Connection, 3> all_{Connection(*this), Connection(*this), Connection(*this)};
+};
+
+TEST_F(Uploading, SeveralConnectionsSendSideBySideAndCommitInOrder) {
+  for (int i = 3; i < 12; ++i)
+    put(fmt::format("{:012}", i) + std::string(20, 'c'), bytes_of_size(1000, unsigned(i)));
+  Shared shared(std::chrono::seconds(20));
+  const auto report = upload_all(shared.connections(), *outbox_, trials(), clock_, {});
+  ASSERT_TRUE(report);
+  EXPECT_EQ(report->handed_over, 11);
+  expect_handed_over_once(shared.server);
+  EXPECT_TRUE(shared.side_by_side);
+  std::vector<std::string> ids;
+  for (const auto& [id, bytes] : bytes_) ids.push_back(id);
+  EXPECT_EQ(shared.committed(), ids);
+}
+
+TEST_F(Uploading, NothingYoungerIsCommittedBeforeWhicheverRequestOfSeveralConnectionsIsCut) {
+  for (const auto fault :
+       {DoubleServer::InjectedFault::before, DoubleServer::InjectedFault::after}) {
+    bool cut = true;
+    for (int n = 1; cut; ++n) {
+      ASSERT_LT(n, 50);
+      TearDown(), bytes_.clear(), SetUp();
+      for (int i = 3; i < 7; ++i)
+        put(fmt::format("{:012}", i) + std::string(20, 'c'), bytes_of_size(1000, unsigned(i)));
+      Shared shared;
+      shared.server.fail_at = n;
+      shared.server.fault = fault;
+      const auto first = upload_all(shared.connections(), *outbox_, trials(), clock_, {});
+      ASSERT_TRUE(first);
+      cut = first->waiting > 0;
+      std::vector<std::string> ids;
+      for (const auto& [id, bytes] : bytes_) ids.push_back(id);
+      const auto committed = shared.committed();
+      ASSERT_LE(committed.size(), ids.size());
+      EXPECT_TRUE(std::equal(committed.begin(), committed.end(), ids.begin())) << n;
+      if (cut) {
+        EXPECT_FALSE(first->why.empty());
+        const auto second = upload_all(shared.connections(), *outbox_, trials(), clock_, {});
+        ASSERT_TRUE(second);
+        EXPECT_EQ(second->waiting, 0);
+      }
+      expect_handed_over_once(shared.server);
+    }
+  }
+}
+
+TEST_F(Uploading, ATrialThatTheServerRefusesHoldsUpNoOtherConnection) {
+  for (int i = 3; i < 7; ++i)
+    put(fmt::format("{:012}", i) + std::string(20, 'c'), bytes_of_size(1000, unsigned(i)));
+  Shared shared;
+  const auto wrong = core::bytes_of("not what was queued, of another size");
+  ASSERT_TRUE(core::write_file(trials() / (kSecond + ".ttrial"), wrong));
+  const auto report = upload_all(shared.connections(), *outbox_, trials(), clock_, {});
+  ASSERT_TRUE(report);
+  EXPECT_EQ(report->refused, 1);
+  EXPECT_EQ(report->handed_over, 5);
+  EXPECT_EQ(report->waiting, 0);
 }
 
 TEST(HttpServer, RefusesOtherSchemesPathsAndOddTokens) {

@@ -8,6 +8,7 @@
 #include <checkout.hpp>
 #include <cstdlib>
 #include <fstream>
+#include <mutex>
 
 #include "core/clock.hpp"
 #include "station/uplink/http_server.hpp"
@@ -20,11 +21,13 @@ namespace {
 using namespace world;
 namespace fs = std::filesystem;
 
-/// Dies and is back, elsewhere, once so many requests were answered.
+/// Dies and is back, elsewhere, once so many requests were answered. One connection for all threads,
+/// which take turns.
 class Mortal final : public uplink::Server {
  public:
   Mortal(const ServedWorld& world, int lives_for) : world_(world), left_(lives_for) { live(); }
   core::Result<uplink::HttpResponse> send(const uplink::Request& request) override {
+    const std::lock_guard held(mutex_);
     if (--left_ == 0) {
       process_->kill_now();
       live();
@@ -43,6 +46,7 @@ class Mortal final : public uplink::Server {
             .value());
   }
   const ServedWorld& world_;
+  std::mutex mutex_;
   int left_;
   std::unique_ptr<ServerProcess> process_;
   std::unique_ptr<uplink::HttpServer> line_;
@@ -67,7 +71,8 @@ TEST(Outage, ABacklogOfDaysIsHandedOverOnceAndInOrderThoughTheServerDies) {
   Mortal server(world, 200);
   core::ManualClock clock;
   const auto report =
-      uplink::upload_all(server, outbox, trials, clock, {.give_up_after_ns = 600'000'000'000});
+      uplink::upload_all(std::vector<uplink::Server*>(uplink::kUploadConnections, &server), outbox,
+                         trials, clock, {.give_up_after_ns = 600'000'000'000});
   ASSERT_TRUE(report) << report.error().what;
   EXPECT_EQ(report->handed_over, kTrials);
   EXPECT_EQ(report->waiting + report->refused, 0);

@@ -8,7 +8,8 @@ namespace tractus::load {
 
 /// `trials` of ten seconds at 1 kHz, by the product's own uplink; the rival sends one stream of the
 /// same bytes in the largest pieces the server takes and checks nothing.
-void judge_backlog(bench::Report& report, const Server& server, int trials,
+/// @param connections  trials that send their pieces at a time
+void judge_backlog(bench::Report& report, const Server& server, int trials, int connections,
                    const std::filesystem::path& folder);
 
 }  // namespace tractus::load

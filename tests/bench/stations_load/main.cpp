@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <thread>
 
+#include "station/uplink/upload.hpp"
 #include "tests/bench/stations_load/backlog.hpp"
 #include "tests/bench/stations_load/station.hpp"
 #include "tests/bench/support/report.hpp"
@@ -16,6 +17,7 @@ namespace fs = std::filesystem;
 
 struct Options {
   int slow = 64, fast = 16, walls = 2, backlog = 100;
+  int connections = int(uplink::kUploadConnections);
   double seconds = 30.0, between_s = 1.0;
   bool plain = false;
 };
@@ -28,6 +30,7 @@ Options options_of(int argc, char** argv) {
     if (word == "--fast") out.fast = std::atoi(value.c_str());
     if (word == "--walls") out.walls = std::atoi(value.c_str());
     if (word == "--backlog") out.backlog = std::atoi(value.c_str());
+    if (word == "--connections") out.connections = std::atoi(value.c_str());
     if (word == "--seconds") out.seconds = std::atof(value.c_str());
     if (word == "--between") out.between_s = std::atof(value.c_str());
     if (word == "--plain") out.plain = true;
@@ -143,6 +146,7 @@ int main(int argc, char** argv) {
     return 2;
   }
   if (options.slow + options.fast > 0) judge_load(report, *server, options, folder);
-  if (options.backlog > 0) load::judge_backlog(report, *server, options.backlog, folder);
+  if (options.backlog > 0)
+    load::judge_backlog(report, *server, options.backlog, options.connections, folder);
   return report.finish(argc, argv);
 }
