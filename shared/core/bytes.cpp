@@ -93,5 +93,11 @@ std::string new_id() { return fmt::format("{:012x}{}", utc_us() / 1000, hex(rand
 
 bool is_id(std::string_view text) noexcept { return text.size() == 32 && all_hex(text); }
 
+std::string sha256(ByteView bytes) {
+  Sha256 hash;
+  hash.add(bytes);
+  return hash.hex();
+}
+
 }  // namespace core
 }  // namespace tractus

@@ -43,11 +43,5 @@ std::string Sha256::hex() {
   return core::hex(digest);
 }
 
-std::string sha256(ByteView bytes) {
-  Sha256 hash;
-  hash.add(bytes);
-  return hash.hex();
-}
-
 }  // namespace core
 }  // namespace tractus

@@ -171,7 +171,7 @@ core::Result<wire::UploadState> announce_upload(Backend& backend, const Caller& 
 
 core::Result<wire::UploadState> upload_state(Backend& backend, const Caller& station,
                                              const std::string& trial_id) {
-  if (!core::is_id(trial_id)) return unknown(trial_id);
+  TRY(own_upload(backend, station, trial_id));  // before the lock: others' ids wait for nothing
   const auto held = TRY(hold_upload(backend, trial_id));  // no piece is half on its way
   auto upload = TRY(own_upload(backend, station, trial_id));
   return state_of(backend, upload);
@@ -180,7 +180,7 @@ core::Result<wire::UploadState> upload_state(Backend& backend, const Caller& sta
 core::Result<Appended> append_upload(Backend& backend, const Caller& station,
                                      const std::string& trial_id, std::uint64_t offset_bytes,
                                      std::uint32_t crc32c, core::ByteView bytes) {
-  if (!core::is_id(trial_id)) return unknown(trial_id);
+  TRY(own_upload(backend, station, trial_id));  // before the lock: others' ids wait for nothing
   const auto held = TRY(hold_upload(backend, trial_id));
   auto upload = TRY(own_upload(backend, station, trial_id));
   if (upload.state != store::UploadPhase::receiving)
@@ -203,7 +203,7 @@ core::Result<Appended> append_upload(Backend& backend, const Caller& station,
 core::Result<wire::UploadState> commit_upload(Backend& backend, const Caller& station,
                                               const std::string& trial_id,
                                               const std::string& traceparent) {
-  if (!core::is_id(trial_id)) return unknown(trial_id);
+  TRY(own_upload(backend, station, trial_id));  // before the lock: others' ids wait for nothing
   const auto held = TRY(hold_upload(backend, trial_id));
   auto upload = TRY(own_upload(backend, station, trial_id));
   if (upload.state == store::UploadPhase::complete) return state_of(backend, upload);

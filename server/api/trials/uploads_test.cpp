@@ -1,6 +1,7 @@
 #include "server/api/trials/uploads.hpp"
 
 #include <fstream>
+#include <future>
 
 #include "core/try.hpp"
 #include "db/store/operations/jobs.hpp"
@@ -121,6 +122,21 @@ TEST_F(Uploads, OfAnotherStationDoNotExist) {
             core::Errc::not_found);
   EXPECT_EQ(commit_upload(backend_, kTwo, kTrial).error().code, core::Errc::not_found);
   EXPECT_EQ(append_upload(backend_, kTwo, kTrial, 0, 0, {}).error().code, core::Errc::not_found);
+}
+
+TEST_F(Uploads, WhoAsksForThoseOfAnotherDoesNotWaitForTheirLock) {
+  sent(bytes_);
+  auto held = store_.hold("upload " + std::string(kTrial));
+  ASSERT_TRUE(held) << held.error().what;
+  auto asked = std::async(std::launch::async, [&] {
+    return std::array{upload_state(backend_, kTwo, kTrial).error().code,
+                      append_upload(backend_, kTwo, kTrial, 0, 0, {}).error().code,
+                      commit_upload(backend_, kTwo, kTrial).error().code};
+  });
+  const bool answered = asked.wait_for(std::chrono::seconds(5)) == std::future_status::ready;
+  held->reset();
+  EXPECT_TRUE(answered);
+  for (const core::Errc code : asked.get()) EXPECT_EQ(code, core::Errc::not_found);
 }
 
 TEST_F(Uploads, APieceElsewhereIsNotTakenAndToldWhereItStands) {
