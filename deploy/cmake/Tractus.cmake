@@ -34,7 +34,8 @@ add_library(tractus_options INTERFACE)
 target_compile_options(tractus_options INTERFACE -Wall -Wextra -Wconversion -Wshadow -Werror
   $<$<CXX_COMPILER_ID:GNU>:-Wno-stringop-overflow$<SEMICOLON>-Wno-restrict>  # gcc 12 at -O3 is wrong about buffers of fmt and std::string
   $<$<CXX_COMPILER_ID:GNU>:--param=ggc-min-heapsize=1048576>  # KiB: the compiler tidies its memory less often, a tenth less time
-  -march=${TRACTUS_ARCH} -fno-math-errno)
+  -march=${TRACTUS_ARCH} -fno-math-errno
+  $<$<CXX_COMPILER_ID:GNU>:-fexpensive-optimizations>)  # without it gcc at -O1 leaves out vzeroupper, and exp() is 20 times slower after Eigen
 target_link_libraries(tractus_options INTERFACE Threads::Threads fmt::fmt)
 if(TRACTUS_SYMBOLS)
   target_compile_options(tractus_options INTERFACE -g1)

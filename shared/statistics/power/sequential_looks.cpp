@@ -1,7 +1,9 @@
 #include "statistics/power/sequential_looks.hpp"
 
 #include <algorithm>
+#include <boost/math/tools/toms748_solve.hpp>
 #include <cmath>
+#include <cstdint>
 #include <numbers>
 
 #include "core/try.hpp"
@@ -64,20 +66,23 @@ std::vector<double> stopped_by(const Looks& looks, double drift) {
     const double step = looks.shares[k] - t, bound = looks.bounds[k] * std::sqrt(looks.shares[k]);
     sum += beyond(density, step, bound, drift);
     out.push_back(sum);
-    density = next(density, step, bound, drift);
+    if (k + 1 < looks.shares.size()) density = next(density, step, bound, drift);
     t = looks.shares[k];
   }
   return out;
 }
 
-/// The x from low to high where an increasing function reaches `target`.
+/// The x from low to high where an increasing function reaches `target`; the end next to it where it does so beyond.
 template <class Function>
 double root(Function f, double target, double low, double high) {
-  for (int i = 0; i < 60; ++i) {
-    const double middle = 0.5 * (low + high);
-    (f(middle) < target ? low : high) = middle;
-  }
-  return 0.5 * (low + high);
+  const double at_low = f(low) - target, at_high = f(high) - target;
+  if (at_low >= 0.0) return low;
+  if (at_high <= 0.0) return high;
+  std::uintmax_t rounds = 60;
+  const auto [below, above] = boost::math::tools::toms748_solve(
+      [&](double x) { return f(x) - target; }, low, high, at_low, at_high,
+      boost::math::tools::eps_tolerance<double>(46), rounds);
+  return 0.5 * (below + above);
 }
 
 core::Result<void> check_shares(const std::vector<double>& shares) {

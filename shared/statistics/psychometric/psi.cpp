@@ -53,24 +53,27 @@ Psi::Psi(double least, double greatest)
   core::require(least > 0.0 && least < greatest, "levels rise from above nothing");
   for (const double level : levels_)
     for (const double threshold : thresholds_)
-      for (const double slope : slopes_) right_.push_back(share_right(level, threshold, slope));
+      for (const double slope : slopes_) {
+        const double p = share_right(level, threshold, slope);
+        right_.push_back(p);
+        information_.push_back(times_log(p) + times_log(1.0 - p));
+      }
 }
 
-// Steps 1 to 5: p(right), both posteriors and their entropies.
+// Steps 1 to 5: p(right), both posteriors and their entropies. The expected entropy is
+// −Σ_r p(r) Σ (joint/p(r)) ln(joint/p(r)) with joint = posterior · p(r | α, β). Written out, what does
+// not hang on the level (Σ posterior ln posterior) drops out of the comparison.
 double Psi::level() const {
   double best = 1e300, at = levels_.back();
   for (std::size_t l = 0; l < levels_.size(); ++l) {
     const double* right = &right_[l * posterior_.size()];
-    double p_right = 0.0, minus_right = 0.0, minus_wrong = 0.0;
+    const double* information = &information_[l * posterior_.size()];
+    double p_right = 0.0, known = 0.0;
     for (std::size_t i = 0; i < posterior_.size(); ++i) {
-      const double joint = posterior_[i] * right[i];
-      p_right += joint;
-      minus_right += times_log(joint);
-      minus_wrong += times_log(posterior_[i] - joint);
+      p_right += posterior_[i] * right[i];
+      known += posterior_[i] * information[i];
     }
-    // Expected entropy: −Σ_r p(r) Σ (joint/p(r)) ln(joint/p(r)).
-    const double entropy =
-        times_log(p_right) + times_log(1.0 - p_right) - minus_right - minus_wrong;
+    const double entropy = times_log(p_right) + times_log(1.0 - p_right) - known;
     if (entropy < best) best = entropy, at = levels_[l];
   }
   return at;

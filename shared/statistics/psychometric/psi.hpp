@@ -40,8 +40,9 @@ class Psi {
 
  private:
   std::vector<double> levels_, thresholds_, slopes_;
-  std::vector<double> right_;      ///< [level][threshold][slope]: P
-  std::vector<double> posterior_;  ///< [threshold][slope]
+  std::vector<double> right_;        ///< [level][threshold][slope]: P
+  std::vector<double> information_;  ///< likewise: P ln P + (1 − P) ln(1 − P)
+  std::vector<double> posterior_;    ///< [threshold][slope]
   int answers_ = 0;
 };
 

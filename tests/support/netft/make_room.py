@@ -42,7 +42,7 @@ def pose(R, p):
 
 
 def smooth(s):
-    s = np.clip(s, 0, 1)
+    s = min(max(s, 0.0), 1.0)
     return s * s * s * (10 - 15 * s + 6 * s * s)
 
 
