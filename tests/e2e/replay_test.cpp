@@ -116,7 +116,7 @@ TEST_F(Replay, AgreesWithTheOracleOnThePublishedField) {
 // The potential's valleys are finer than the averaged vectors of the published field: more places
 // to rest.
 TEST_F(Replay, AgreesWithTheOracleOnThePotentialField) {
-  expect_agreement("--trials 4 --seconds 0.125 --field potential", 0.25);
+  expect_agreement("--trials 8 --seconds 0.125 --field potential", 0.25);
 }
 
 TEST_F(Replay, WritesAllItPromisesAndTheSameTwice) {
