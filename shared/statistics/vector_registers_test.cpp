@@ -1,6 +1,6 @@
-/// Code of the C library that was compiled for SSE waits, at each of its instructions, for the upper halves of the vector registers where a
-/// function before it left them in use [Intel, Optimization Reference Manual, "Mixing AVX Code with SSE Code"]: exp() took twenty times as
-/// long after a sum by Eigen that gcc had compiled at -O1 without -fexpensive-optimizations, for vzeroupper is one of those.
+/// Code for SSE, as much of the C library is, is slowed where a function before it left the upper halves of the vector registers in use
+/// [IntelOptimization]: exp() took twenty times as long after Eigen, compiled by gcc at -O1 without -fexpensive-optimizations, which
+/// brings vzeroupper.
 #include <gtest/gtest.h>
 
 #include "statistics/anova/anova.hpp"
@@ -30,8 +30,10 @@ TEST(VectorRegisters, UpperHalvesAreNotLeftInUse) {
   const Groups groups{{"a", "b"},
                       {Vector::LinSpaced(12, 0.0, 1.0), Vector::LinSpaced(12, 0.5, 2.0)}};
   asm volatile("vzeroupper");
-  EXPECT_TRUE(welch(groups));
-  EXPECT_FALSE(upper_halves_in_use());
+  const auto fit = welch(groups);
+  const bool left_in_use = upper_halves_in_use();
+  EXPECT_TRUE(fit);
+  EXPECT_FALSE(left_in_use);
 }
 
 }  // namespace

@@ -62,7 +62,7 @@ Psi::Psi(double least, double greatest)
 
 // Steps 1 to 5: p(right), both posteriors and their entropies. The expected entropy is
 // −Σ_r p(r) Σ (joint/p(r)) ln(joint/p(r)) with joint = posterior · p(r | α, β). Written out, what does
-// not hang on the level (Σ posterior ln posterior) drops out of the comparison.
+// not depend on the level (Σ posterior ln posterior) drops out of the comparison.
 double Psi::level() const {
   double best = 1e300, at = levels_.back();
   for (std::size_t l = 0; l < levels_.size(); ++l) {

@@ -29,21 +29,21 @@ const savedViewsQuery = queryOptions({
 export function useSavedViews(page: ListedPage) {
   const client = useQueryClient();
   const all = useQuery(savedViewsQuery).data?.views ?? [];
-  const onSuccess = (now: v.InferOutput<typeof savedViewsSchema>) => client.setQueryData(savedViewsQuery.queryKey, now);
-  const onMutate = () => client.cancelQueries({ queryKey: savedViewsQuery.queryKey }); // an older answer would undo it
+  const onSuccess = async (now: v.InferOutput<typeof savedViewsSchema>) => {
+    await client.cancelQueries({ queryKey: savedViewsQuery.queryKey }); // a list asked for before the change would replace it
+    client.setQueryData(savedViewsQuery.queryKey, now);
+  };
   const save = useMutation({
     mutationFn: (view: { readonly name: string; readonly search: string }) =>
       requestJson(address('/api/v1/session/views', {}), savedViewsSchema, {
         method: 'POST',
         body: { page, ...view },
       }),
-    onMutate,
     onSuccess,
   });
   const remove = useMutation({
     mutationFn: (id: string) =>
       requestJson(`/session/views/${encodeURIComponent(id)}`, savedViewsSchema, { method: 'DELETE' }),
-    onMutate,
     onSuccess,
   });
   return {

@@ -101,7 +101,6 @@ export async function signIn(page: Page, path = '/'): Promise<void> {
   await page.getByLabel('Password').fill(account.password);
   await page.getByRole('button', { name: 'Sign in' }).click();
   await page.getByRole('button', { name: 'Sign out' }).waitFor();
-  await forgetJumps(page); // the form goes by the person's own click, however late the answer comes
 }
 
 /** What the server answers to who is signed in on this page. */
