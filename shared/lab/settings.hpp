@@ -146,18 +146,18 @@ struct PalpationFitSettings {
 struct PalpationWeightsSettings {
   /// At least this share of the samples, the best known ones, is judged. Tuned.
   double least_judged_share = 0.3;
-  /// A sample whose expected error exceeds the sensor's by this factor is not judged. Tuned.
-  double poorly_known_factor = 10.0;
+  /// A sample of which more than this factor of the sensor's noise is not known is not judged. Tuned.
+  double poorly_known_factor = 4.0;
   /// Less force at a point is no contact. Physical.
   double contact_N = 0.05;
-  /// A point under more force is pressed: its speed must have a sign. Tuned.
+  /// Under more force it is told from the recording how much of it friction and losses are. Tuned.
   double pressed_N = 0.3;
-  /// A speed above so many of its standard errors has a sign. Tuned.
-  double sign_errors = 3.0;
-  /// Friction and losses are assumed to be this share of the contact force. Prior.
-  double loss_share = 0.1;
-  /// The mass with which a probe's inertia is assumed to act. Physical.
-  double mass_kg = 0.15;
+  /// They are assumed to be at least this share of the contact force. Prior.
+  double least_loss_share = 0.02;
+  /// And at most this one. Prior.
+  double most_loss_share = 0.3;
+  /// The mass with which a probe's inertia is assumed to act before the recordings say. Prior.
+  double mass_kg = 0.02;
   /// What is felt so near to the volume's edge is not known. Physical.
   double edge_voxels = 2.0;
   /// The shank has snapped if its deflection changed by more than this times what the hand moved.
@@ -169,6 +169,8 @@ struct PalpationWeightsSettings {
   double snap_known_s = 0.015;
   /// Equilibria nearer than this are one. Numeric.
   double same_equilibrium_m = 2e-6;
+  /// Equilibria further apart than this are several. Numeric.
+  double other_equilibrium_m = 1e-5;
   /// What a change of equilibrium must save, in squares of the usual error. Tuned.
   double change_cost = 4.0;
   /// A sample counts at most as so many usual errors. Tuned.
@@ -260,8 +262,8 @@ struct ScreenSettings {
 struct FreeAirSettings {
   /// An effect of whose mean square less than this share is in free air is not held against it. Tuned.
   double least_share = 0.05;
-  /// What is not seen there by half is not named. Physical.
-  double least_shown = 0.5;
+  /// What is not seen there by this share is not named: of true masses 0.9 to 1.2 show, of noise up to 0.53. Tuned.
+  double least_shown = 0.7;
 };
 
 /// A drift that follows the motion is no sensor's.

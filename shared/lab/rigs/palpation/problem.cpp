@@ -389,7 +389,7 @@ double PalpationProblem::noise_floor(const Structure& structure,
     const Residuals left = full_rate(structure, values, k);
     const double sensor = trial(k).sensor_squares().head<3>().sum();
     for (std::size_t i = 0; i < left.t_s.size(); ++i) {
-      if (left.judgement[i] == Judgement::no_equilibrium || left.judgement[i] == Judgement::at_jump)
+      if (left.judgement[i] != Judgement::judged && left.judgement[i] != Judgement::unknown_motion)
         continue;
       all.push_back({std::pow(left.channels[0][i], 2), sensor, std::pow(trial(k).motion_N[i], 2),
                      left.judgement[i] == Judgement::judged});
@@ -472,6 +472,7 @@ Result<std::unique_ptr<Problem>> make_palpation_problem(const models::PalpationM
   });
   for (const std::string& what : wrong)
     if (!what.empty()) return Error{Errc::bad_input, what};
+  mark_saturated(recordings);
   if (progress && !progress(0.6)) return Error{Errc::cancelled, "stopped"};
   auto problem = std::make_unique<PalpationProblem>(std::move(field), model, options.user_effects,
                                                     std::move(recordings), set.tract);

@@ -252,6 +252,43 @@ INSTANTIATE_TEST_SUITE_P(Palpation, AHiddenEffect,
                                          effects::EffectInstance{"shank_curvature", {6e-4, 3.5}}),
                          [](const auto& one) { return one.param.id; });
 
+double share_of(const Problem& problem, Judgement judgement) {
+  std::vector<double> values;
+  for (const Parameter& p : problem.parameters({})) values.push_back(p.start);
+  double found = 0.0, all = 0.0;
+  for (int k = 0; k < problem.trials(); ++k) {
+    const auto judged = problem.full_rate({}, values, k).judgement;
+    found += double(std::ranges::count(judged, judgement)), all += double(judged.size());
+  }
+  return found / all;
+}
+
+/// Poses known within 5 µm and a sensor of 0.01 N: nothing but a fast turn of a contact's friction is unknown.
+TEST(PalpationProblem, JudgesMostSamplesWhereTheMotionIsKnown) {
+  EXPECT_GT(share_of(*problem_of(model(), model()), Judgement::judged), 0.75);
+}
+
+/// The largest tenth of the forces along the probe was cut off.
+TEST(PalpationProblem, ASensorAtTheEndOfItsRangeIsNotJudgedNorFitted) {
+  auto set = recordings(model(), 4, 500);
+  std::vector<double> along;
+  for (const auto& trial : set.trials)
+    for (const math::Wrench& w : trial.wrench_H) along.push_back(w.force_N.z());
+  std::ranges::sort(along);
+  const double least_N = along[along.size() / 10];
+  for (auto& trial : set.trials)
+    for (math::Wrench& w : trial.wrench_H) w.force_N.z() = std::max(w.force_N.z(), least_N);
+  const auto problem = make_palpation_problem(model(), std::move(set), corner(), {.threads = 1});
+  ASSERT_TRUE(problem) << problem.error().what;
+  EXPECT_NEAR(share_of(**problem, Judgement::saturated), 0.1, 0.02);
+  const auto found = fit(**problem, {}, {.threads = 1, .held_out = false});
+  ASSERT_TRUE(found) << found.error().what;
+  EXPECT_NEAR(found->rmse / found->noise_floor, 1.0, 0.08);
+  const double product =
+      estimate(*found, "/base/force_factor_Nm").value * estimate(*found, "/base/force_scale").value;
+  EXPECT_NEAR(product / (0.005 * 0.3), 1.0, 0.01);
+}
+
 TEST(PalpationProblem, RefusesWhatCannotBeJudged) {
   const auto refusal = [](trial::PalpationSet set) {
     const auto problem = make_palpation_problem(model(), std::move(set), corner(), {.threads = 1});

@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "lab/settings.hpp"
+#include "lab/signal/saturation.hpp"
 #include "lab/signal/smoother.hpp"
 
 namespace tractus {
@@ -249,8 +250,27 @@ Result<PalpationRecording> prepare(trial::PalpationMeasurement&& trial, const Ve
   }
   for (std::size_t k = 0; k < n; k += stride) out.measured.push_back(stacked(trial.wrench_H[k]));
   out.judgement.assign(out.size(), Judgement::judged);
+  out.saturated.assign(out.size(), {});
   choose_instants(out, 1);
   return out;
+}
+
+void mark_saturated(std::span<PalpationRecording> recordings) {
+  for (PalpationRecording& r : recordings) r.saturated.assign(r.size(), {});
+  for (int c = 0; c < 6; ++c) {
+    std::vector<std::vector<double>> columns;
+    for (const PalpationRecording& r : recordings) {
+      columns.emplace_back();
+      for (const Vec6& wrench : r.measured) columns.back().push_back(wrench[c]);
+    }
+    std::vector<std::span<const double>> telling;
+    for (std::size_t k = 0; k < recordings.size(); ++k)
+      if (shows_noise(columns[k], recordings[k].noise_sd[c])) telling.emplace_back(columns[k]);
+    const SensorRange range = sensor_range(telling);
+    for (PalpationRecording& r : recordings)
+      for (std::size_t k = 0; k < r.size(); ++k)
+        r.saturated[k][std::size_t(c)] = range.ends_at(r.measured[k][c]);
+  }
 }
 
 void choose_instants(PalpationRecording& r, std::size_t stride) {

@@ -4,6 +4,7 @@
 
 #include <Eigen/Cholesky>
 #include <array>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -33,7 +34,9 @@ struct PalpationRecording {
   std::vector<double> a_sd_m_s2;       ///< of the smoothed acceleration, along any axis
   std::vector<Vec6> measured;          ///< as recorded, at the motion's samples
   Vec6 noise_sd = Vec6::Zero();        ///< of one sample; kDead of a channel that says nothing
-  std::vector<std::size_t> instants;   ///< the samples that a fit compares
+  std::vector<std::array<bool, 6>>
+      saturated;                      ///< per sample, the channels at the end of their range
+  std::vector<std::size_t> instants;  ///< the samples that a fit compares
   // Set by weigh().
   std::vector<math::Vec2> deflection_m;  ///< of a model near the truth: where a search begins
   std::vector<Mat6> whitener;            ///< of each instant's residual, lower triangular
@@ -65,6 +68,9 @@ struct PalpationRecording {
 core::Result<PalpationRecording> prepare(trial::PalpationMeasurement&& trial,
                                          const math::Vec3& down, const std::string& where,
                                          std::size_t most_samples);
+
+/// Finds the samples at which a channel of the sensor stood at the end of its range, as all recordings tell it.
+void mark_saturated(std::span<PalpationRecording> recordings);
 
 /// Every `stride`-th sample is an instant.
 void choose_instants(PalpationRecording& recording, std::size_t stride);

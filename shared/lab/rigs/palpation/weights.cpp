@@ -14,6 +14,8 @@ namespace {
 using math::Vec3;
 
 constexpr const auto& kWeights = kSettings.palpation_weights;
+/// Median of the sum of squares of two normal numbers over its mean: of χ² with 2 degrees of freedom, over 2.
+constexpr double kMedianOfTwoSquares = 0.6931;
 
 /// The motion moved as a whole: along axis 0 … 2 of V, or turned about axis 3 … 5 at the handle.
 models::PalpationMotion moved(const models::PalpationMotion& motion, int way, double step) {
@@ -80,6 +82,17 @@ class Course {
     usual_ = std::max(*middle, 6.0);
   }
 
+  /// Samples at which the shank may rest in several places.
+  std::vector<bool> several() const {
+    std::vector<bool> out(r_.size());
+    for (std::size_t k = 0; k < r_.size(); ++k)
+      for (std::size_t way = 1; way < kWeights.candidates; ++way)
+        if ((ways_[way].deflection_m[k] - ways_[0].deflection_m[k]).norm() >
+            kWeights.other_equilibrium_m)
+          out[k] = true;
+    return out;
+  }
+
   models::PalpationAnswer best() const {
     std::vector<std::array<std::size_t, kWeights.candidates>> from(r_.size());
     std::array<double, kWeights.candidates> sum{};
@@ -132,6 +145,14 @@ Tip unbent_tip(const models::PalpationRuntime& runtime, const effects::HandleMot
   return {handle.X_VH.p + lever, handle.v_m_s + handle.omega_rad_s.cross(lever)};
 }
 
+/// What is not known of each sample of a trial.
+struct UnknownParts {
+  std::vector<Mat6> by_motion;     ///< covariance of the wrench by the pose's error
+  std::vector<Mat6> by_direction;  ///< by where its pressed points move
+  std::vector<bool> several;       ///< whether the shank may rest in several places
+  std::vector<std::size_t> snapped;
+};
+
 /// Samples at which the shank has gone to another rest: it moved by far more than the hand.
 std::vector<std::size_t> snaps(const models::PalpationRuntime& runtime, const PalpationRecording& r,
                                const models::PalpationAnswer& at) {
@@ -183,16 +204,6 @@ std::vector<Pressed> pressed(const models::PalpationRuntime& runtime, const Palp
   return out;
 }
 
-/// Does a pressed point move so slowly along or across its force that the sign is not known?
-bool sign_unknown(const models::PalpationRuntime& runtime, const PalpationRecording& r,
-                  const models::PalpationAnswer& at, std::size_t k) {
-  return std::ranges::any_of(pressed(runtime, r, at, k, kWeights.pressed_N),
-                             [](const Pressed& point) {
-                               return std::min(point.along_m_s(), point.across_m_s()) <
-                                      kWeights.sign_errors * point.sd_m_s;
-                             });
-}
-
 /// From a force at a point of H to the wrench that is felt of it, the force as it is felt.
 Eigen::Matrix<double, 6, 3> lever(const models::PalpationRuntime& runtime, const Vec3& p_H_m) {
   const laws::PalpationParameters& base = runtime.law().parameters();
@@ -203,17 +214,39 @@ Eigen::Matrix<double, 6, 3> lever(const models::PalpationRuntime& runtime, const
   return out;
 }
 
+/// What a trial's forces across the predicted contact force miss of it, as a share of it: friction that the model has not, as
+/// far as what is known of motion and sensor does not account for it.
+double loss_share_of(const PalpationRecording& r, const models::PalpationAnswer& at,
+                     const std::vector<Mat6>& by_motion) {
+  std::vector<double> squares;
+  for (std::size_t k = 0; k < r.size(); ++k) {
+    const Vec3 force = at.wrench_H[k].force_N;
+    if (force.norm() < kWeights.pressed_N) continue;
+    const Vec3 n = force.normalized();
+    const math::Mat3 across = math::Mat3::Identity() - n * n.transpose();
+    const math::Mat3 known =
+        by_motion[k].topLeftCorner<3, 3>() + math::Mat3(r.sensor_squares().head<3>().asDiagonal());
+    const double missed = (across * r.missed(k, at.wrench_H[k]).head<3>()).squaredNorm();
+    squares.push_back((missed - (across * known).trace()) / force.squaredNorm());
+  }
+  if (squares.empty()) return kWeights.least_loss_share;
+  const auto middle = squares.begin() + std::ptrdiff_t(squares.size() / 2);
+  std::ranges::nth_element(squares, middle);
+  return std::clamp(std::sqrt(std::max(0.0, *middle / kMedianOfTwoSquares)),
+                    kWeights.least_loss_share, kWeights.most_loss_share);
+}
+
 /// Covariance of a sample's wrench by what is not known of where its pressed points move: a force
 /// with the velocity's direction in it (friction across the wall's normal, a loss along it) of
-/// kWeights.loss_share of the contact force may point elsewhere.
+/// `loss_share` of the contact force may point elsewhere.
 Mat6 by_direction(const models::PalpationRuntime& runtime, const PalpationRecording& r,
-                  const models::PalpationAnswer& at, std::size_t k) {
+                  const models::PalpationAnswer& at, std::size_t k, double loss_share) {
   const math::Mat3 to_H = r.motion.handle[k].X_VH.q.conjugate().toRotationMatrix();
   Mat6 out = Mat6::Zero();
   for (const Pressed& point : pressed(runtime, r, at, k, kWeights.contact_N)) {
     const double turned = 1.0 / std::max(1.0, point.across_m_s() / point.sd_m_s);
     const double reversed = 2.0 * std::exp(-0.5 * std::pow(point.along_m_s() / point.sd_m_s, 2));
-    const double size = kWeights.loss_share * point.force_V_N.norm();
+    const double size = loss_share * point.force_V_N.norm();
     const Vec3 n = to_H * point.normal();
     const math::Mat3 along = n * n.transpose();
     const math::Mat3 force =
@@ -254,33 +287,36 @@ double quantile(std::vector<double> values, double share) {
   return *at;
 }
 
-/// Variance of the force that the motion's noise makes at each sample, over the most that may be judged.
-std::vector<double> ignorance_of_motion(const PalpationRecording& r,
-                                        const std::vector<Mat6>& by_motion, double sensor_N) {
-  const double most = std::pow(kWeights.poorly_known_factor * sensor_N, 2);
-  std::vector<double> out(r.size());
-  for (std::size_t k = 0; k < r.size(); ++k)
-    out[k] = std::max(by_motion[k].topLeftCorner<3, 3>().trace() / most,
-                      std::pow(kWeights.mass_kg * r.a_sd_m_s2[k] / sensor_N, 2));
+/// Standard deviation of the force that is not known of each sample: by the motion's errors, and by where friction points.
+std::vector<double> unknown_force_N(const std::vector<Mat6>& by_motion,
+                                    const std::vector<Mat6>& by_direction) {
+  std::vector<double> out(by_motion.size());
+  for (std::size_t k = 0; k < out.size(); ++k)
+    out[k] = std::sqrt((by_motion[k] + by_direction[k]).topLeftCorner<3, 3>().trace());
   return out;
+}
+
+bool saturated(const PalpationRecording& r, std::size_t k) {
+  return std::ranges::find(r.saturated[k], true) != r.saturated[k].end();
 }
 
 /// Judged samples, the floor over them, and |g| where the tip touches.
 void set_trust(const models::PalpationRuntime& runtime, PalpationRecording& r,
-               const models::PalpationAnswer& at, const std::vector<Mat6>& by_motion,
-               const std::vector<std::size_t>& snapped) {
+               const models::PalpationAnswer& at, const UnknownParts& unknown) {
   const Vec6 sensor = r.sensor_squares();
-  const double most_N = std::sqrt(sensor.head<3>().sum());
-  const std::vector<double> ignorance = ignorance_of_motion(r, by_motion, most_N);
-  const double most = std::max(1.0, quantile(ignorance, kWeights.least_judged_share));
+  const double sensor_N = std::sqrt(sensor.head<3>().sum());
+  const std::vector<double> unknown_N = unknown_force_N(unknown.by_motion, unknown.by_direction);
+  const double most_N = std::max(kWeights.poorly_known_factor * sensor_N,
+                                 quantile(unknown_N, kWeights.least_judged_share));
   for (std::size_t k = 0; k < r.size(); ++k)
-    r.judgement[k] = !at.converged[k] ? Judgement::no_equilibrium
-                     : ignorance[k] <= most && at_the_edge_N(runtime, r, at, k) <= most_N &&
-                             !sign_unknown(runtime, r, at, k)
+    r.judgement[k] = !at.converged[k]     ? Judgement::no_equilibrium
+                     : saturated(r, k)    ? Judgement::saturated
+                     : unknown.several[k] ? Judgement::at_jump
+                     : unknown_N[k] <= most_N && at_the_edge_N(runtime, r, at, k) <= sensor_N
                          ? Judgement::judged
                          : Judgement::unknown_motion;
   const std::size_t reach = snap_reach(r);
-  for (const std::size_t k : snapped)
+  for (const std::size_t k : unknown.snapped)
     for (std::size_t i = k - std::min(k, reach); i < std::min(r.size(), k + reach); ++i)
       r.judgement[i] = Judgement::at_jump;
   r.floor.setZero();
@@ -288,7 +324,7 @@ void set_trust(const models::PalpationRuntime& runtime, PalpationRecording& r,
   double judged = 0.0;
   for (std::size_t k = 0; k < r.size(); ++k) {
     if (r.judgement[k] == Judgement::judged) {
-      r.floor += sensor + Vec6(by_motion[k].diagonal());
+      r.floor += sensor + Vec6((unknown.by_motion[k] + unknown.by_direction[k]).diagonal());
       judged += 1.0;
     }
     if (at.wrench_H[k].force_N.norm() < kWeights.contact_N) continue;
@@ -301,31 +337,38 @@ void set_trust(const models::PalpationRuntime& runtime, PalpationRecording& r,
 }  // namespace
 
 void weigh(const models::PalpationRuntime& runtime, PalpationRecording& r) {
-  const models::PalpationAnswer at = Course(runtime, r).best();
+  const Course course(runtime, r);
+  const models::PalpationAnswer at = course.best();
   r.deflection_m = at.deflection_m;
-  const auto by_motion = motion_covariance(runtime, r, at);
+  UnknownParts unknown{
+      motion_covariance(runtime, r, at), {}, course.several(), snaps(runtime, r, at)};
   r.motion_N.clear();
-  for (const Mat6& covariance : by_motion)
+  for (const Mat6& covariance : unknown.by_motion)
     r.motion_N.push_back(std::sqrt(covariance.topLeftCorner<3, 3>().trace()));
-  const auto snapped = snaps(runtime, r, at);
-  set_trust(runtime, r, at, by_motion, snapped);
+  const double loss_share = loss_share_of(r, at, unknown.by_motion);
+  for (std::size_t k = 0; k < r.size(); ++k)
+    unknown.by_direction.push_back(by_direction(runtime, r, at, k, loss_share));
+  set_trust(runtime, r, at, unknown);
   const Vec6 sensor = r.noise_sd.cwiseAbs2();
   r.usual_square = 0.0;
   const std::size_t reach = snap_reach(r);
   for (std::size_t j = 0; j < r.whitener.size(); ++j) {
     const std::size_t now = r.instants[j];
-    Mat6 known = by_motion[now];
+    Mat6 known = unknown.by_motion[now];
     known.diagonal() += sensor;
     const double edge_N = at_the_edge_N(runtime, r, at, now);
     const double unknown_N = std::hypot(kWeights.mass_kg * r.a_sd_m_s2[now], edge_N);
-    Mat6 expected = known + by_direction(runtime, r, at, now);
+    Mat6 expected = known + unknown.by_direction[now];
     const auto tip = lever(runtime, runtime.law().point_H_m(0, math::Vec2::Zero()));
     expected += unknown_N * unknown_N * tip * tip.transpose();
-    for (const std::size_t k : snapped)
+    for (const std::size_t k : unknown.snapped)
       if (k <= now + reach && now < k + reach) {
         const Vec6 jump = stacked(at.wrench_H[k]) - stacked(at.wrench_H[k - 1]);
         expected += jump * jump.transpose();
       }
+    for (int c = 0; c < 6; ++c)
+      if (r.saturated[now][std::size_t(c)])
+        expected(c, c) += PalpationRecording::kDead * PalpationRecording::kDead;
     const Eigen::LLT<Mat6> root(expected);
     r.whitener[j] = root.matrixL().solve(Mat6::Identity());
     r.usual_square += (r.whitener[j] * known * r.whitener[j].transpose()).trace() /
