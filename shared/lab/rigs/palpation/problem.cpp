@@ -12,6 +12,7 @@
 #include "effects/palpation_effect.hpp"
 #include "lab/identify/least_squares.hpp"
 #include "lab/identify/parallel.hpp"
+#include "lab/rigs/palpation/noise.hpp"
 #include "lab/rigs/palpation/parameter_space.hpp"
 #include "lab/rigs/palpation/recording.hpp"
 #include "lab/rigs/palpation/trend.hpp"
@@ -28,8 +29,6 @@ using core::Result;
 using math::Vec3;
 
 constexpr const auto& kCompared = kSettings.palpation_fit;
-/// Median of the square of three normal numbers over its mean: of χ² with 3 degrees of freedom, over 3.
-constexpr double kMedianOfSquares = 2.36597 / 3.0;
 /// What a drift counts when structures are compared: the orders of one course, which the channels
 /// share as a rule, and more than the six numbers of a constant bias, which it contains.
 constexpr int kDriftCounts = 2 * Trend::kOrders;
@@ -375,44 +374,20 @@ States PalpationProblem::predictors(int k) const {
   return out;
 }
 
-/// Sensor and motion say too little of noise whose neighbours are alike: how much more there is of either is estimated from
-/// what the model leaves, by medians, so that what happens now and then does not count: of the sensor's where the motion's
-/// errors do nothing, of the motion's where they do.
 double PalpationProblem::noise_floor(const Structure& structure,
                                      std::span<const double> values) const {
-  struct Sample {
-    double error, sensor, motion;  // squares, N²
-    bool judged;
-  };
-  std::vector<Sample> all;
+  std::vector<NoiseSample> all;
   for (int k = 0; k < trials(); ++k) {
+    const PalpationRecording& r = trial(k);
     const Residuals left = full_rate(structure, values, k);
-    const double sensor = trial(k).sensor_squares().head<3>().sum();
-    for (std::size_t i = 0; i < left.t_s.size(); ++i) {
-      if (left.judgement[i] != Judgement::judged && left.judgement[i] != Judgement::unknown_motion)
-        continue;
-      all.push_back({std::pow(left.channels[0][i], 2), sensor, std::pow(trial(k).motion_N[i], 2),
-                     left.judgement[i] == Judgement::judged});
-    }
+    const double sensor = r.sensor_squares().head<3>().sum();
+    for (std::size_t i = 0; i < left.t_s.size(); ++i)
+      if (left.judgement[i] == Judgement::judged || left.judgement[i] == Judgement::unknown_motion)
+        all.push_back({std::pow(left.channels[0][i], 2), sensor, std::pow(r.motion_N[i], 2),
+                       left.judgement[i] == Judgement::judged});
   }
-  const auto times = [&](auto counts, auto share) {
-    std::vector<double> ratios;
-    for (const Sample& s : all)
-      if (counts(s)) ratios.push_back(share(s));
-    if (ratios.size() < kCompared.least_for_noise) return 1.0;
-    const auto middle = ratios.begin() + std::ptrdiff_t(ratios.size() / 2);
-    std::ranges::nth_element(ratios, middle);
-    return std::max(1.0, *middle / kMedianOfSquares);
-  };
-  const double of_sensor = times([](const Sample& s) { return s.motion < 0.1 * s.sensor; },
-                                 [](const Sample& s) { return s.error / s.sensor; });
-  const double of_motion =
-      times([](const Sample& s) { return s.motion >= s.sensor; },
-            [&](const Sample& s) { return (s.error - of_sensor * s.sensor) / s.motion; });
-  double sum = 0.0, count = 0.0;
-  for (const Sample& s : all)
-    if (s.judged) sum += of_sensor * s.sensor + of_motion * s.motion, count += 1.0;
-  return count > 0.0 ? std::sqrt(sum / count) : channels_.front().noise_floor;
+  const double noise = judged_noise(all);
+  return noise > 0.0 ? noise : channels_.front().noise_floor;
 }
 
 std::vector<Derived> PalpationProblem::derived(const Structure& structure,

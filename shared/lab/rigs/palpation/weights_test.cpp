@@ -6,6 +6,8 @@
 #include <cmath>
 #include <random>
 
+#include "lab/rigs/palpation/noise.hpp"
+
 namespace tractus {
 namespace lab {
 namespace {
@@ -93,6 +95,25 @@ TEST(PalpationRecording, KeepsAFastRecordingAsItWasMeasuredAtNoMoreThan250PerSec
   EXPECT_EQ(r.measured[7], stacked(fast.wrench_H[28]));
   EXPECT_EQ(r.motion.t_s[7], fast.t_s[28]);
   EXPECT_NEAR(r.noise_sd[1], 0.01, 0.001);  // of a sample at the full rate
+}
+
+/// Noise of a sensor of 0.03 N a component and of a motion whose squares are five times what is stated, which is less than
+/// the sensor's everywhere; contact in half of the samples.
+TEST(PalpationNoise, OfTheMotionIsToldThoughTheSensorsIsMore) {
+  constexpr double kSensor_N2 = 3 * 9e-4, kStated_N2 = 0.4 * kSensor_N2, kTimes = 5.0;
+  std::mt19937 random(4);
+  std::normal_distribution<double> normal;
+  std::vector<NoiseSample> samples;
+  double sum = 0.0;
+  for (int k = 0; k < 8000; ++k) {
+    const double motion = k % 2 == 0 ? kStated_N2 : 0.0;
+    const double sd = std::sqrt((kSensor_N2 + kTimes * motion) / 3.0);
+    double error = 0.0;
+    for (int c = 0; c < 3; ++c) error += std::pow(sd * normal(random), 2);
+    samples.push_back({error, kSensor_N2, motion, true});
+    sum += error;
+  }
+  EXPECT_NEAR(judged_noise(samples) / std::sqrt(sum / 8000.0), 1.0, 0.03);
 }
 
 TEST(PalpationRecording, CountsCoarseRoundingAsNoise) {
