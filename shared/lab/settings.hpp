@@ -140,6 +140,12 @@ struct PalpationFitSettings {
   double instants_Hz = 100.0;
   /// Samples from which noise is estimated anew. Bound.
   std::size_t least_for_noise = 100;
+  /// The motion's noise does nothing where its squares are below this share of the sensor's. Prior.
+  double motion_does_nothing = 0.1;
+  /// And most where they are above this share. Prior.
+  double motion_does_most = 1.0;
+  /// Where they are not, so much of the samples, those where it does more, tells how large it is. Prior.
+  double telling_share = 0.2;
 };
 
 /// How the motion's errors weigh on a palpation's samples, and which equilibrium the shank was in.

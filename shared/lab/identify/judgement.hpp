@@ -16,7 +16,7 @@ enum class Judgement : std::uint8_t {
   saturated,       ///< the sensor stood at the end of its range
   standstill,      ///< dry friction at rest explains any value that was measured
   no_equilibrium,  ///< the model's shank found no rest there
-  at_jump,         ///< the model's shank jumps from one rest to another there
+  at_jump,  ///< the model's shank jumps from one rest to another there, or may rest in several places
 };
 constexpr auto words(Judgement) {
   return std::to_array<core::Word<Judgement>>({
@@ -26,7 +26,7 @@ constexpr auto words(Judgement) {
       {Judgement::saturated, "sensor at the end of its range"},
       {Judgement::standstill, "at rest within dry friction"},
       {Judgement::no_equilibrium, "no equilibrium of the shank"},
-      {Judgement::at_jump, "at a jump of the shank"},
+      {Judgement::at_jump, "several equilibria of the shank"},
   });
 }
 using core::name;

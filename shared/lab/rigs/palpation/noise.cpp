@@ -11,16 +11,7 @@ namespace {
 
 /// Median of the square of three normal numbers over its mean: of χ² with 3 degrees of freedom, over 3.
 constexpr double kMedianOfThreeSquares = 2.36597 / 3.0;
-/// Squares of the motion's noise over the sensor's below which it does nothing, and above which it does most. Prior.
-constexpr double kDoesNothing = 0.1, kDoesMost = 1.0;
-/// Where it never does most, so much of the samples, those where it does more, tells it. Prior.
-constexpr double kTelling = 0.2;
-
-double value_at_share(std::vector<double> values, double share) {
-  const auto at = values.begin() + std::ptrdiff_t(share * double(values.size() - 1));
-  std::ranges::nth_element(values, at);
-  return *at;
-}
+constexpr const auto& kNoise = kSettings.palpation_fit;
 
 /// Median of the errors' squares over what is expected of them; 1 if noise of that size is all.
 template <class Expected>
@@ -36,7 +27,7 @@ std::vector<NoiseSample> where_ratio_within(const std::vector<NoiseSample>& samp
   std::vector<NoiseSample> out;
   for (const NoiseSample& s : samples)
     if (s.motion >= least * s.sensor && s.motion < below * s.sensor) out.push_back(s);
-  if (out.size() < kSettings.palpation_fit.least_for_noise) out.clear();
+  if (out.size() < kNoise.least_for_noise) out.clear();
   return out;
 }
 
@@ -55,13 +46,19 @@ double motion_factor(const std::vector<NoiseSample>& telling, double of_sensor) 
 
 }  // namespace
 
+double value_at_share(std::vector<double> values, double share) {
+  const auto at = values.begin() + std::ptrdiff_t(share * double(values.size() - 1));
+  std::ranges::nth_element(values, at);
+  return *at;
+}
+
 double judged_noise(const std::vector<NoiseSample>& samples) {
   if (samples.empty()) return 0.0;
   std::vector<double> ratios;
   for (const NoiseSample& s : samples) ratios.push_back(s.motion / s.sensor);
-  const double most =
-      std::clamp(value_at_share(std::move(ratios), 1.0 - kTelling), kDoesNothing, kDoesMost);
-  const auto still = where_ratio_within(samples, 0.0, kDoesNothing);
+  const double most = std::clamp(value_at_share(std::move(ratios), 1.0 - kNoise.telling_share),
+                                 kNoise.motion_does_nothing, kNoise.motion_does_most);
+  const auto still = where_ratio_within(samples, 0.0, kNoise.motion_does_nothing);
   const double of_sensor =
       still.empty()
           ? 1.0

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 
+#include "lab/rigs/palpation/noise.hpp"
 #include "lab/settings.hpp"
 
 namespace tractus {
@@ -230,9 +231,8 @@ double loss_share_of(const PalpationRecording& r, const models::PalpationAnswer&
     squares.push_back((missed - (across * known).trace()) / force.squaredNorm());
   }
   if (squares.empty()) return kWeights.least_loss_share;
-  const auto middle = squares.begin() + std::ptrdiff_t(squares.size() / 2);
-  std::ranges::nth_element(squares, middle);
-  return std::clamp(std::sqrt(std::max(0.0, *middle / kMedianOfTwoSquares)),
+  const double median = value_at_share(std::move(squares), 0.5);
+  return std::clamp(std::sqrt(std::max(0.0, median / kMedianOfTwoSquares)),
                     kWeights.least_loss_share, kWeights.most_loss_share);
 }
 
@@ -281,12 +281,6 @@ double at_the_edge_N(const models::PalpationRuntime& runtime, const PalpationRec
   return base.force_scale * base.force_factor_Nm * most_per_m;
 }
 
-double quantile(std::vector<double> values, double share) {
-  const auto at = values.begin() + std::ptrdiff_t(share * double(values.size()));
-  std::ranges::nth_element(values, at);
-  return *at;
-}
-
 /// Standard deviation of the force that is not known of each sample: by the motion's errors, and by where friction points.
 std::vector<double> unknown_force_N(const std::vector<Mat6>& by_motion,
                                     const std::vector<Mat6>& by_direction) {
@@ -296,6 +290,7 @@ std::vector<double> unknown_force_N(const std::vector<Mat6>& by_motion,
   return out;
 }
 
+/// Did any channel of the sensor stand at the end of its range?
 bool saturated(const PalpationRecording& r, std::size_t k) {
   return std::ranges::find(r.saturated[k], true) != r.saturated[k].end();
 }
@@ -307,7 +302,7 @@ void set_trust(const models::PalpationRuntime& runtime, PalpationRecording& r,
   const double sensor_N = std::sqrt(sensor.head<3>().sum());
   const std::vector<double> unknown_N = unknown_force_N(unknown.by_motion, unknown.by_direction);
   const double most_N = std::max(kWeights.poorly_known_factor * sensor_N,
-                                 quantile(unknown_N, kWeights.least_judged_share));
+                                 value_at_share(unknown_N, kWeights.least_judged_share));
   for (std::size_t k = 0; k < r.size(); ++k)
     r.judgement[k] = !at.converged[k]     ? Judgement::no_equilibrium
                      : saturated(r, k)    ? Judgement::saturated
