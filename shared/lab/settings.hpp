@@ -311,6 +311,24 @@ struct DependenceSettings {
   double ridge = 10.0;
 };
 
+/// Whether what is left follows a law of physics that the model lacks.
+struct LawsSettings {
+  /// Time constants of the contact's memory; a shorter one is a matter of when force and pose were recorded. Physical.
+  std::array<double, 3> memories_s{0.15, 0.8, 3.0};
+  /// Laws that are combined at most. Bound.
+  std::size_t most_laws = 3;
+  /// A further law must take away this share more. Bound.
+  double least_more = 0.003;
+  /// Added to the diagonal of the terms' correlations. Numeric.
+  double ridge = 1e-3;
+  /// Less force has no direction. Physical.
+  double least_N = 1e-3;
+  /// A slower tip has a less certain direction of friction. Physical.
+  double least_speed_m_s = 1e-3;
+  /// Less force is no contact. Physical.
+  double touch_N = 0.02;
+};
+
 /// Checks of an effect that a user wrote.
 struct UserEffectsSettings {
   /// An effect whose responses correlate more with another's says the same. Tuned.
@@ -356,6 +374,8 @@ struct MoreMissingOdds {
   double per_log_error;
   /// For all of the error's mean square predicted by recorded signals. Tuned.
   double per_share;
+  /// For all of the judged squares that laws of physics predict, where the rig has such. Tuned.
+  double per_law_share = 0.0;
 };
 
 /// Thresholds of the selection on a rig, as mean squares of the whitened residual: how near to 1 a
@@ -402,9 +422,9 @@ struct Settings {
                                            .least_gain_share = 0.01,
                                            .least_gain_of_excess = 0.0,
                                            .observations_per_trial = 60.0,
-                                           .drift_r2_on_motion = 1.01,
+                                           .drift_r2_on_motion = 0.15,
                                            .common_errors = 1.7,
-                                           .more = {-2.06, 5.73, 11.7}};
+                                           .more = {-2.06, 5.73, 11.7, 23.0}};
   SmoothingSettings smoothing;
   PhasesSettings phases;
   DecimationSettings decimation;
@@ -425,6 +445,7 @@ struct Settings {
   DiagnosisSettings diagnosis;
   FreeAirSettings free_air;
   DriftOnMotionSettings drift_on_motion;
+  LawsSettings laws;
   DependenceSettings dependence;
   GrammarSettings grammar;
   DiscoverySettings discovery;

@@ -174,6 +174,7 @@ Json diagnosis_schema() {
        {"torque", optional(torque)},
        {"depends_on", text("signal on which an unexplained residual depends; else empty")},
        {"rest_explained", share("share of the residual that the signal explains")},
+       {"law_explained", optional(share("share of the residual that laws of physics explain"))},
        {"held_out", text("how trials were held out")},
        {"parameters", estimates_schema()},
        {"trials", fitted_trials_schema()},

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "lab/identify/fit_report.hpp"
+#include "lab/identify/law_dependence.hpp"
 #include "lab/identify/residual_dependence.hpp"
 #include "lab/identify/selection.hpp"
 #include "lab/identify/sensitivity.hpp"
@@ -115,13 +116,21 @@ double predicted_share(const ResidualDependence& rest) {
   return rest.trials_better >= kAnswer.most_trials ? rest.predictable : 0.0;
 }
 
-/// Probability that a material effect is missing from a model, by the error over the floor and by what signals predict of
-/// it: a logistic model that was fitted to labelled answers, tests/hidden_physics/benchmark/calibrate.py.
-double probability_of_more(const Problem& problem, const ResidualDependence& rest, const Fit& fit) {
+/// Probability that a material effect is missing from a model, by the error over the floor and by what signals and laws
+/// predict of it: a logistic model that was fitted to labelled answers, tests/hidden_physics/benchmark/calibrate.py.
+double probability_of_more(const Problem& problem, const ResidualDependence& rest,
+                           const LawDependence& laws, const Fit& fit) {
   const MoreMissingOdds& odds = problem.selection_thresholds().more;
   const double above = std::log(std::max(1.0, fit.held_out_rmse / fit.noise_floor));
-  return 1.0 / (1.0 + std::exp(-odds.at_floor - odds.per_log_error * above -
-                               odds.per_share * predicted_share(rest)));
+  return 1.0 /
+         (1.0 + std::exp(-odds.at_floor - odds.per_log_error * above -
+                         odds.per_share * predicted_share(rest) - odds.per_law_share * laws.share));
+}
+
+/// What the rest varies with: laws, or signals where these predict more.
+std::string words_of(const ResidualDependence& rest, const LawDependence& laws) {
+  if (laws.share <= predicted_share(rest)) return rest.words;
+  return fmt::format("{} ({:.0f} %)", fmt::join(laws.laws, ", "), 100.0 * laws.share);
 }
 
 /// How much of the force is noise, or an error of the motion.
@@ -178,9 +187,10 @@ Result<Diagnosis> diagnose(const Problem& problem, const DiagnoseOptions& option
   out.base = {out.base_fit.rmse, out.base_fit.held_out_rmse, out.base_fit.noise_floor};
   Solution& chosen = selection.chosen();
   ResidualDependence rest = residual_dependence(residual, chosen);
+  LawDependence laws = law_dependence(residual, chosen);
   out.final_fit = chosen.structure.effects.empty() ? out.base_fit : report(residual, chosen, true);
   out.base.noise_floor = std::min(out.base.noise_floor, out.final_fit.noise_floor);
-  const bool more = probability_of_more(problem, rest, out.final_fit) > 0.5;
+  const bool more = probability_of_more(problem, rest, laws, out.final_fit) > 0.5;
   const bool named = !chosen.structure.effects.empty() &&
                      (!more || explain_most(rest, out.base_fit, out.final_fit));
   out.floor_share = floor_share(problem, out.final_fit);
@@ -192,6 +202,7 @@ Result<Diagnosis> diagnose(const Problem& problem, const DiagnoseOptions& option
   if (!named && !chosen.structure.effects.empty()) {
     out.final_fit = out.base_fit;
     rest = residual_dependence(residual, selection.base());
+    laws = law_dependence(residual, selection.base());
   }
   const Solution& final = named ? chosen : selection.base();
   const StructurePosterior posterior(residual, selection, final);
@@ -204,13 +215,14 @@ Result<Diagnosis> diagnose(const Problem& problem, const DiagnoseOptions& option
     out.effects.push_back(found(problem, out.final_fit, id));
     out.effects.back().probability = posterior.of_effect(id);
   }
-  out.probability = stated_probability(out, probability_of_more(problem, rest, out.final_fit),
+  out.probability = stated_probability(out, probability_of_more(problem, rest, laws, out.final_fit),
                                        posterior.of_structure(final.structure));
   out.steps = named ? steps(residual, selection, out)
                     : std::vector<Step>{{"base", out.base.rmse, out.base.held_out_rmse,
                                          out.base_fit.noise_floor}};
-  if (more) out.depends_on = rest.words;
+  if (more) out.depends_on = words_of(rest, laws);
   out.dependence_explained = predicted_share(rest);
+  out.law_explained = laws.share;
   if (!selection.refused().empty())
     out.notes.push_back(
         fmt::format("{} was left out: what it would take out of the residual follows the motion, "

@@ -99,6 +99,8 @@ struct Diagnosis {
   std::string depends_on;  ///< what an unexplained rest varies with, in words; else empty
   /// Share of the rest's mean square that recorded signals predict in held-out trials; 0 if in too few of them.
   double dependence_explained = 0.0;
+  /// Share of its judged squares that laws of physics predict in trials that they were not fitted to (law_dependence.hpp).
+  double law_explained = 0.0;
   std::vector<std::string> notes;  ///< on the recording and on how the answer was reached
   Fit base_fit;                    ///< of the model as given
   Fit final_fit;                   ///< with the effects named; the base's when nothing is

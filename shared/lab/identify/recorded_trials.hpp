@@ -1,6 +1,7 @@
 /// What was recorded, as the engine sees it: trials, channels, states.
 #pragma once
 
+#include <Eigen/Core>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -23,6 +24,18 @@ struct States {
   std::vector<std::vector<double>> values;
 };
 
+/// Laws of physics by which a force that no model has may follow from what was recorded, each a sum of terms with numbers
+/// that all trials share. The first holds what is no news: what the model, the sensor and the effects of the catalogue do.
+struct ForceLaws {
+  struct Law {
+    std::string name;  ///< "the contact force of before"
+    std::vector<Eigen::Matrix3Xd>
+        terms;  ///< the force for a number of 1, in the errors' frame, one column per sample
+  };
+  std::vector<Law> laws;
+  std::vector<double> error_sd_N;  ///< per sample, of an error's length where the model is right
+};
+
 /// Const methods may be called from several threads at once.
 class RecordedTrials {
  public:
@@ -37,6 +50,8 @@ class RecordedTrials {
   virtual States states(int trial) const = 0;
   /// What may predict an error: the states and, where errors are vectors, vectors in the errors' frame.
   virtual States predictors(int trial) const { return states(trial); }
+  /// None where errors are no vectors.
+  virtual ForceLaws force_laws(int) const { return {}; }
   /// Remarks on the recording itself that belong into every answer: "tz_Nm was not recorded: …".
   virtual const std::vector<std::string>& notes() const = 0;
 };

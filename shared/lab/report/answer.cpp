@@ -232,6 +232,7 @@ Json to_json(const Diagnosis& d) {
   out["settle"] = discriminating_experiment_json(d.discriminating_experiment);
   out["depends_on"] = d.depends_on;
   out["rest_explained"] = number(d.dependence_explained);
+  out["law_explained"] = number(d.law_explained);
   out["held_out"] = d.final_fit.folds;
   out["parameters"] = estimates(d.final_fit);
   out["trials"] = fitted_trials(d.final_fit);

@@ -2,7 +2,8 @@
 
 An answer is labelled by the truth: does its final model lack a hidden effect that lowers the held-out error by a material share?
 The model is logistic in ln(error / floor) and in the share of the error that signals predict, with coefficients of its own for
-the probing force, the torque about the probe's axis and the palpation force; the share's is common. A weak normal prior stands for
+the probing force, the torque about the probe's axis and the palpation force; the share's is common, and that of the share which laws
+of physics predict is the palpation's alone. A weak normal prior stands for
 what is not in the data. The rows that are printed for each generator are of a fit that never saw that generator.
 """
 from __future__ import annotations
@@ -19,9 +20,9 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 import scoring  # noqa: E402
 
 CHANNELS = ("probing", "torque", "palpation")
-# at_floor of each channel, per_log_error of each channel, per_share: before the data, mean and standard deviation.
-PRIOR_MEAN = np.array([-3.0, -3.0, -3.0, 5.0, 5.0, 5.0, 8.0])
-PRIOR_SD = np.array([1.5, 1.5, 1.5, 3.0, 3.0, 3.0, 6.0])
+# at_floor of each channel, per_log_error of each channel, per_share, per_law_share: before the data, mean and standard deviation.
+PRIOR_MEAN = np.array([-3.0, -3.0, -3.0, 5.0, 5.0, 5.0, 8.0, 20.0])
+PRIOR_SD = np.array([1.5, 1.5, 1.5, 3.0, 3.0, 3.0, 6.0, 20.0])
 
 
 def channel_answers(answer: dict) -> list:
@@ -40,7 +41,7 @@ def row_of(truth: dict, channel: str, part: dict, catalogue: dict) -> dict:
     last = part["steps"][-1]
     return {"channel": rig if channel == "force" else "torque", "generator": truth["generator"],
             "above": max(0.0, math.log(last["held_out_rmse"] / last["noise_floor"])),
-            "share": part.get("rest_explained", 0.0), "more": bool(lacking)}
+            "share": part.get("rest_explained", 0.0), "law_share": part.get("law_explained", 0.0), "more": bool(lacking)}
 
 
 def rows_of(folder: pathlib.Path, label: str) -> list:
@@ -57,8 +58,8 @@ def rows_of(folder: pathlib.Path, label: str) -> list:
 
 def features(row: dict) -> list:
     at = CHANNELS.index(row["channel"])
-    out = [0.0] * 7
-    out[at], out[3 + at], out[6] = 1.0, row["above"], row["share"]
+    out = [0.0] * 8
+    out[at], out[3 + at], out[6], out[7] = 1.0, row["above"], row["share"], row["law_share"]
     return out
 
 
@@ -95,9 +96,9 @@ def main() -> int:
         parser.error("a frozen generation is for measuring, not for fitting")
     rows = [row for folder in options.generation for row in rows_of(folder, options.label)]
     odds = fitted(rows)
-    print(f"{'channel':22} at_floor  per_log_error  per_share")
+    print(f"{'channel':22} at_floor  per_log_error  per_share  per_law_share")
     for k, channel in enumerate(CHANNELS):
-        print(f"{channel:22} {odds[k]:8.2f} {odds[3 + k]:14.2f} {odds[6]:10.2f}")
+        print(f"{channel:22} {odds[k]:8.2f} {odds[3 + k]:14.2f} {odds[6]:10.2f} {odds[7]:14.2f}")
     print(f"\n{'fit without':22} parts  more  stated   Brier     ECE")
     for generator in sorted({row["generator"] for row in rows}):
         held = [row for row in rows if row["generator"] == generator]

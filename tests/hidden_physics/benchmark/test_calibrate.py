@@ -57,9 +57,10 @@ class Rows(unittest.TestCase):
 class Fit(unittest.TestCase):
     def test_finds_the_odds_that_answers_were_drawn_from(self):
         random = np.random.default_rng(3)
-        true = np.array([-2.0, -3.0, -1.0, 4.0, 2.0, 6.0, 5.0])
+        true = np.array([-2.0, -3.0, -1.0, 4.0, 2.0, 6.0, 5.0, 12.0])
         rows = [{"channel": calibrate.CHANNELS[k % 3], "above": float(random.exponential(0.4)),
-                 "share": float(random.choice([0.0, random.uniform(0, 0.5)]))} for k in range(30000)]
+                 "share": float(random.choice([0.0, random.uniform(0, 0.5)])),
+                 "law_share": float(random.choice([0.0, random.uniform(0, 0.2)]))} for k in range(30000)]
         x = np.array([calibrate.features(row) for row in rows])
         p = calibrate.probability(x, true)
         for row, more in zip(rows, random.random(len(rows)) < p):
@@ -68,7 +69,7 @@ class Fit(unittest.TestCase):
         self.assertLess(np.max(np.abs(calibrate.fitted(rows) - true) / error), 3.5)
 
     def test_keeps_to_the_prior_where_there_are_no_answers(self):
-        rows = [{"channel": "probing", "above": 0.0, "share": 0.0, "more": False}]
+        rows = [{"channel": "probing", "above": 0.0, "share": 0.0, "law_share": 0.0, "more": False}]
         np.testing.assert_allclose(calibrate.fitted(rows)[[1, 2, 4, 5]], calibrate.PRIOR_MEAN[[1, 2, 4, 5]])
 
 

@@ -12,6 +12,7 @@
 #include "effects/palpation_effect.hpp"
 #include "lab/identify/least_squares.hpp"
 #include "lab/identify/parallel.hpp"
+#include "lab/rigs/palpation/force_laws.hpp"
 #include "lab/rigs/palpation/noise.hpp"
 #include "lab/rigs/palpation/parameter_space.hpp"
 #include "lab/rigs/palpation/recording.hpp"
@@ -89,6 +90,7 @@ class PalpationProblem final : public Problem {
   std::vector<bool> in_free_air(int k) const override;
   States states(int k) const override;
   States predictors(int k) const override;
+  ForceLaws force_laws(int k) const override;
   std::vector<Derived> derived(const Structure& structure, std::span<const double> values,
                                std::string_view effect) const override;
   const std::vector<std::string>& notes() const override { return notes_; }
@@ -126,6 +128,8 @@ class PalpationProblem final : public Problem {
   void set_instants();
   void set_channels();
 
+  /// By the given model.
+  Felt felt(int k) const;
   models::PalpationRuntime runtime_of(const Structure& structure,
                                       std::span<const double> values) const {
     auto runtime = models::PalpationRuntime::make(numbers_.recorded(structure, values), field_);
@@ -303,8 +307,16 @@ std::vector<bool> PalpationProblem::in_free_air(int k) const {
   return out;
 }
 
+Felt PalpationProblem::felt(int k) const {
+  std::vector<double> start;
+  for (const Parameter& p : numbers_.parameters({})) start.push_back(p.start);
+  return felt_by(runtime_of({}, start), trial(k));
+}
+
 States PalpationProblem::states(int k) const {
   const PalpationRecording& r = trial(k);
+  const Felt of_trial = felt(k);
+  const auto& [tip, velocity, force, force_H] = of_trial;
   States out;
   const auto add = [&](const char* name, const auto& value) {
     out.names.emplace_back(name);
@@ -314,19 +326,6 @@ States PalpationProblem::states(int k) const {
   const auto handle = [&](std::size_t i) -> const effects::HandleMotion& {
     return r.motion.handle[i];
   };
-  std::vector<double> start;
-  for (const Parameter& p : numbers_.parameters({})) start.push_back(p.start);
-  const auto runtime = runtime_of({}, start);
-  std::vector<Vec3> tip, velocity, force;
-  models::PalpationAnswer at;
-  runtime.predict_at(r.motion, r.all(), r.deflection_m, at);
-  for (std::size_t i = 0; i < r.size(); ++i) {
-    const auto& h = handle(i);
-    tip.push_back(runtime.tip_m(h.X_VH, at.deflection_m[i]));
-    velocity.push_back(h.v_m_s + h.omega_rad_s.cross(runtime.law().parameters().length_m *
-                                                     (h.X_VH.q * Vec3::UnitZ())));
-    force.push_back(h.X_VH.q * at.wrench_H[i].force_N);
-  }
   add("time_s", [&](std::size_t i) { return r.motion.t_s[i] - r.motion.t_s.front(); });
   if (tract_) {
     const Vec3 axis = tract_->axis;
@@ -351,9 +350,9 @@ States PalpationProblem::states(int k) const {
   add("acceleration_m_s2", [&](std::size_t i) { return handle(i).a_m_s2.norm(); });
   add("force_N", [&](std::size_t i) { return force[i].norm(); });
   add("omega_rad_s", [&](std::size_t i) { return handle(i).omega_rad_s.norm(); });
-  add("force_x_N", [&](std::size_t i) { return at.wrench_H[i].force_N.x(); });
-  add("force_y_N", [&](std::size_t i) { return at.wrench_H[i].force_N.y(); });
-  add("force_z_N", [&](std::size_t i) { return at.wrench_H[i].force_N.z(); });
+  add("force_x_N", [&](std::size_t i) { return force_H[i].x(); });
+  add("force_y_N", [&](std::size_t i) { return force_H[i].y(); });
+  add("force_z_N", [&](std::size_t i) { return force_H[i].z(); });
   return out;
 }
 
@@ -371,6 +370,25 @@ States PalpationProblem::predictors(int k) const {
   add("velocity", [](const effects::HandleMotion& h) -> Vec3 { return h.v_m_s; });
   add("turning", [](const effects::HandleMotion& h) -> Vec3 { return h.omega_rad_s; });
   add("gravity", [](const effects::HandleMotion& h) -> Vec3 { return h.down; });
+  return out;
+}
+
+ForceLaws PalpationProblem::force_laws(int k) const {
+  const PalpationRecording& r = trial(k);
+  const Felt of_trial = felt(k);
+  std::vector<double> depth_m;
+  if (tract_)
+    for (const Vec3& tip : of_trial.tip_m)
+      depth_m.push_back((tip - tract_->entry_m).dot(tract_->axis));
+  ForceLaws out{force_laws_of({.t_s = r.motion.t_s,
+                               .handle = r.motion.handle,
+                               .force_V_N = of_trial.force_V_N,
+                               .tip_v_m_s = of_trial.velocity_m_s,
+                               .depth_m = depth_m}),
+                {}};
+  const double sensor = r.sensor_squares().head<3>().sum();
+  for (const double motion_N : r.motion_N)
+    out.error_sd_N.push_back(std::sqrt(sensor + motion_N * motion_N));
   return out;
 }
 

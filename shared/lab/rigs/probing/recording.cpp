@@ -194,14 +194,14 @@ double judged(const laws::ProbingLaw& law, const ProbingRecording& r, double x_m
 
 /// Where the judged channel jumps between neighbouring samples because a border lies between them: the
 /// second of the two, and by how much.
-struct Jump {
+struct ForceJump {
   std::size_t sample;
   double size;
 };
 
-std::vector<Jump> jumps(const laws::ProbingLaw& law, const ProbingRecording& r) {
+std::vector<ForceJump> jumps(const laws::ProbingLaw& law, const ProbingRecording& r) {
   const std::vector<double> borders = borders_of(law.parameters().layers);
-  std::vector<Jump> out;
+  std::vector<ForceJump> out;
   const auto& x = r.motion.x_m;
   for (std::size_t k = 1; k < x.size(); ++k)
     for (const double border : borders)
@@ -459,11 +459,12 @@ void weigh(const laws::ProbingLaw& law, std::span<const double> by_effects, Prob
       unknown[k] = std::max(unknown[k], std::abs(judged(law, r, border + near_m, k) -
                                                  judged(law, r, border - near_m, k)));
     }
-  for (const Jump& jump : found)
+  for (const ForceJump& jump : found)
     for (std::size_t k = jump.sample < reach ? 0 : jump.sample - reach;
          k < std::min(n, jump.sample + reach); ++k)
       r.judgement[k] = Judgement::at_border;
-  for (const Jump& jump : found) unknown[jump.sample] = std::max(unknown[jump.sample], jump.size);
+  for (const ForceJump& jump : found)
+    unknown[jump.sample] = std::max(unknown[jump.sample], jump.size);
   // At the end of its range a sensor says no more than that there is at least so much.
   for (std::size_t k = 0; k < n; ++k) {
     if (!r.saturated[k]) continue;
