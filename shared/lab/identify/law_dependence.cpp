@@ -1,7 +1,6 @@
 #include "lab/identify/law_dependence.hpp"
 
 #include <Eigen/Cholesky>
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -61,31 +60,22 @@ class Trials {
   std::vector<std::vector<Eigen::Index>> terms_;  // of each law
 };
 
-}  // namespace
-
-namespace {
-
 /// Of weighted rows, three for each judged sample.
 void remove_trends(const Residuals& r, const std::vector<Eigen::Index>& judged,
                    const ForceLaws& laws, Eigen::MatrixXd& rows) {
-  const Eigen::Index orders = std::min<Eigen::Index>(Drift::kOrders, Eigen::Index(judged.size()));
-  Eigen::MatrixXd powers(Eigen::Index(judged.size()), orders);
-  const double middle_s = 0.5 * (r.t_s.front() + r.t_s.back()),
-               half_s = std::max(0.5 * (r.t_s.back() - r.t_s.front()), 1e-9);
-  for (Eigen::Index j = 0; j < powers.rows(); ++j) {
-    const auto k = std::size_t(judged[std::size_t(j)]);
-    for (Eigen::Index order = 0; order < orders; ++order)
-      powers(j, order) =
-          std::pow((r.t_s[k] - middle_s) / half_s, double(order)) / laws.error_sd_N[k];
+  std::vector<double> t_s, sd_N;
+  for (const Eigen::Index k : judged) {
+    t_s.push_back(r.t_s[std::size_t(k)]);
+    sd_N.push_back(laws.error_sd_N[std::size_t(k)]);
   }
-  const Eigen::MatrixXd basis =
-      powers.householderQr().householderQ() * Eigen::MatrixXd::Identity(powers.rows(), orders);
-  for (int c = 0; c < 3; ++c) {
-    Eigen::Map<Eigen::MatrixXd, 0, Eigen::Stride<Eigen::Dynamic, 3>> of_component(
-        rows.data() + c, powers.rows(), rows.cols(), {rows.rows(), 3});
-    const Eigen::MatrixXd amounts = basis.transpose() * of_component;
-    of_component -= basis * amounts;
-  }
+  const Drift drift(t_s, sd_N);
+  for (Eigen::Index column = 0; column < rows.cols(); ++column)
+    for (int c = 0; c < 3; ++c) {
+      auto of_component = rows.col(column)(Eigen::seqN(c, Eigen::Index(judged.size()), 3));
+      Eigen::VectorXd left = of_component;
+      drift.remove(left);
+      of_component = left;
+    }
 }
 
 }  // namespace
@@ -94,6 +84,7 @@ Eigen::MatrixXd law_products(const Residuals& r, const ForceLaws& laws, bool wit
   std::vector<Eigen::Index> judged;
   for (std::size_t k = 0; k < r.t_s.size(); ++k)
     if (r.judgement[k] == Judgement::judged) judged.push_back(Eigen::Index(k));
+  if (without_trends && judged.size() <= Drift::kOrders) judged.clear();  // a trend is all of them
   std::size_t terms = 0;
   for (const ForceLaws::Law& law : laws.laws) terms += law.terms.size();
   Eigen::MatrixXd rows(3 * Eigen::Index(judged.size()), Eigen::Index(terms) + 1);
@@ -107,7 +98,7 @@ Eigen::MatrixXd law_products(const Residuals& r, const ForceLaws& laws, bool wit
     for (int c = 0; c < 3; ++c)
       rows(at + c, column) = weight * r.channels[std::size_t(c) + 1][std::size_t(k)];
   }
-  if (without_trends) remove_trends(r, judged, laws, rows);
+  if (without_trends && !judged.empty()) remove_trends(r, judged, laws, rows);
   return rows.transpose() * rows;
 }
 

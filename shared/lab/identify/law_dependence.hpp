@@ -12,7 +12,8 @@ namespace tractus::lab {
 /// fitted. A law says how a force is directed, so that its few numbers hold for all components at once; functions of one
 /// signal (residual_dependence.hpp) need dozens for each, and see only what is large.
 struct LawDependence {
-  /// Share of the judged samples' squares, each over its own variance, that laws take away beyond the first, 0 … 1. 0 where the rig has no laws, or of fewer than four trials.
+  /// Share of the judged samples' squares, each over its own variance, that laws take away beyond the first, 0 … 1. 0 where
+  /// the rig has no laws, or of fewer than four trials.
   double share = 0.0;
   std::vector<std::string> laws;  ///< in the order in which they take away most
 };
