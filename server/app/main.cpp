@@ -112,8 +112,9 @@ int main(int argc, char** argv) {
   using namespace tractus;
   ::umask(0077);  // only the owner may access files that this program creates
   // Freed memory is kept for the next request: fetching it anew, page by page, took a third of the
-  // time of an upload. It goes back to the system every two seconds (freed_memory.hpp).
-  ::mallopt(M_MMAP_THRESHOLD, 32 << 20);
+  // time of an upload. It goes back to the system every two seconds (freed_memory.hpp). Buffers of
+  // a megabyte and more go back at once: among small ones they leave gaps that are never filled.
+  ::mallopt(M_MMAP_THRESHOLD, 1 << 20);
   ::mallopt(M_TRIM_THRESHOLD, 64 << 20);
   CLI::App commands{"Tractus server: cases, trials and their assessment", "tractus-server"};
   commands.require_subcommand(1);
