@@ -142,6 +142,15 @@ class Store {
   core::Result<std::unique_ptr<NamedLock>> hold(const std::string& name) {
     return locks_->hold(name);
   }
+  /// As `hold`, and what a statement then finds (Locks::hold_and_query).
+  core::Result<std::pair<std::unique_ptr<NamedLock>, Rows>> hold_and_query(
+      const std::string& name, const Statement& statement) {
+    auto held = TRY(locks_->hold_and_query(name, statement));
+    if (!held.rows)
+      held.rows =
+          TRY(read([&](Reading& tx) { return tx.query_with(statement.sql, statement.values); }));
+    return std::pair(std::move(held.lock), std::move(*held.rows));
+  }
   /// Whether other processes may work on this database at the same time.
   bool shared() const { return bool(besides_); }
 

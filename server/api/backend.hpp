@@ -13,6 +13,7 @@
 #include "server/api/people/secrets.hpp"
 #include "server/api/refusals.hpp"
 #include "server/api/trials/trial_views.hpp"
+#include "server/api/trials/upload_owners.hpp"
 #include "server/http/scratch_space.hpp"
 
 namespace tractus::live {
@@ -61,6 +62,7 @@ struct Backend {
   RefusalLimit refusals{};
   Telemetry telemetry{};
   TrialViews trial_views{};
+  UploadOwners upload_owners{};
   HeldCohorts held_cohorts{};
   PlatformKeys platform_keys{};
   Notifier* notifier = nullptr;       ///< null: nobody is told of events by e-mail or webhook

@@ -32,6 +32,9 @@ class LocalLocks final : public Locks {
   core::Result<std::unique_ptr<NamedLock>> hold(const std::string& name) override {
     return std::unique_ptr<NamedLock>(std::make_unique<Held>(stripes_.hold(name)));
   }
+  core::Result<HeldRows> hold_and_query(const std::string& name, const Statement&) override {
+    return HeldRows{TRY(hold(name)), std::nullopt};
+  }
 
  private:
   struct Held final : NamedLock {
@@ -48,15 +51,25 @@ class PostgresLocks final : public Locks {
   explicit PostgresLocks(const std::string& address) : link_(address) {}
 
   core::Result<std::unique_ptr<NamedLock>> hold(const std::string& name) override {
+    return std::move(TRY(held(name, nullptr)).lock);
+  }
+  core::Result<HeldRows> hold_and_query(const std::string& name,
+                                        const Statement& statement) override {
+    return held(name, &statement);
+  }
+
+ private:
+  core::Result<HeldRows> held(const std::string& name, const Statement* statement) {
     constexpr std::chrono::seconds kPatience{10};
     constexpr std::chrono::milliseconds kBetween{20};
     auto stripe = stripes_.hold(name);
     const auto until = std::chrono::steady_clock::now() + kPatience;
     while (true) {
-      auto session = TRY(try_lock(key_of(name)));
+      std::optional<Rows> rows;
+      const auto session = TRY(try_lock(key_of(name), statement, rows));
       if (session != 0)
-        return std::unique_ptr<NamedLock>(
-            std::make_unique<Held>(*this, key_of(name), session, std::move(stripe)));
+        return HeldRows{std::make_unique<Held>(*this, key_of(name), session, std::move(stripe)),
+                        std::move(rows)};
       if (std::chrono::steady_clock::now() > until)
         return core::Error{core::Errc::unavailable,
                            "another server has held this lock for ten seconds"};
@@ -64,7 +77,6 @@ class PostgresLocks final : public Locks {
     }
   }
 
- private:
   struct Held final : NamedLock {
     Held(PostgresLocks& own, std::int64_t own_key, unsigned own_session,
          std::unique_lock<std::mutex> own_stripe)
@@ -81,20 +93,31 @@ class PostgresLocks final : public Locks {
     return static_cast<std::int64_t>(std::stoull(hash.substr(0, 16), nullptr, 16));
   }
 
-  /// The session that holds it now; 0: another process does.
-  core::Result<unsigned> try_lock(std::int64_t key) {
+  /// The session that holds it now; 0: another process does. `rows` of the statement, if there is
+  /// one and the name is held.
+  core::Result<unsigned> try_lock(std::int64_t key, const Statement* statement,
+                                  std::optional<Rows>& rows) {
     const std::lock_guard held(mutex_);
-    const std::vector<Value> values{key};
     for (int tries = 0;; ++tries) {
       TRY(link_.connect());
-      auto rows = link_.query("select pg_try_advisory_lock(?)", values);
-      if (rows) return rows->front().truth(0) ? link_.session() : 0u;
-      if (link_.connected() || tries > 0) return rows.error();
+      bool locked = false;
+      auto found = statement
+                       ? link_.query_after(fmt::format("select pg_try_advisory_lock({})", key),
+                                           locked, statement->sql, statement->values)
+                       : link_.query("select pg_try_advisory_lock(?)", std::vector<Value>{key});
+      if (found && !statement) locked = found->front().truth(0);
+      if (found && statement && locked) rows = std::move(*found);
+      if (found) return locked ? link_.session() : 0u;
+      if (locked && link_.connected()) unlock_now(key);
+      if (link_.connected() || tries > 0) return found.error();
     }
   }
   void unlock(std::int64_t key, unsigned session) {
     const std::lock_guard held(mutex_);
     if (!link_.connected() || link_.session() != session) return;  // went with its session
+    unlock_now(key);
+  }
+  void unlock_now(std::int64_t key) {
     link_.send_off(fmt::format("select pg_advisory_unlock({})", key));
   }
 

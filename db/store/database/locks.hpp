@@ -3,9 +3,12 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "core/result.hpp"
+#include "db/store/database/value.hpp"
 
 namespace tractus::store {
 
@@ -18,6 +21,18 @@ class NamedLock {
   NamedLock& operator=(const NamedLock&) = delete;
 };
 
+/// A statement that reads, and its values.
+struct Statement {
+  std::string sql;
+  std::vector<Value> values;
+};
+
+/// A held name, and what a statement found while it was held.
+struct HeldRows {
+  std::unique_ptr<NamedLock> lock;
+  std::optional<Rows> rows;  ///< nothing: these locks do not know the database
+};
+
 /// Thread-safe. A thread may hold only one name at a time.
 class Locks {
  public:
@@ -28,6 +43,10 @@ class Locks {
   /// Waits until the name is free. Errors: unavailable: another process held the name for ten
   /// seconds, or the database cannot be reached.
   virtual core::Result<std::unique_ptr<NamedLock>> hold(const std::string& name) = 0;
+  /// As `hold`; the statement sees what everybody did who held the name before. On PostgreSQL both
+  /// are one round trip.
+  virtual core::Result<HeldRows> hold_and_query(const std::string& name,
+                                                const Statement& statement) = 0;
 };
 
 /// Locks among the threads of this process: for a database that only one process uses.

@@ -212,8 +212,10 @@ core::Result<void> PostgresLink::set_up() {
   }
   // Who waits for a lock, or stops in the middle of a transaction, does not do so for ever; a
   // commit is on the disk when it is answered, whatever the server's default is.
+  // A statement sees what was committed before it began, unless its transaction says otherwise.
   TRY(execute(
-      "set lock_timeout = '10s'; set idle_in_transaction_session_timeout = '60s'; "
+      "set default_transaction_isolation = 'read committed'; set lock_timeout = '10s'; set "
+      "idle_in_transaction_session_timeout = '60s'; "
       "select set_config('synchronous_commit', 'on', false) "
       "where current_setting('synchronous_commit') = 'off'; "
       "set tcp_keepalives_idle = 10; set tcp_keepalives_interval = 5; set tcp_keepalives_count = "
@@ -275,9 +277,10 @@ core::Result<void> PostgresLink::each(std::string_view sql, std::span<const Valu
     const bool fresh = !connected();
     core::Result<void> outcome = connect();
     bool any = false;
+    Value begun;
     if (outcome)
-      outcome =
-          begin_and_run(sql, values, [&](Row row) { return any = true, seen(std::move(row)); });
+      outcome = run_after(beginning_, begun, sql, values,
+                          [&](Row row) { return any = true, seen(std::move(row)); });
     if (outcome || fresh || any || connected() || tries > 0) return forget_beginning(), outcome;
   }
 }
@@ -296,13 +299,15 @@ core::Result<void> PostgresLink::run(std::string_view sql, std::span<const Value
 }
 
 /// By libpq's pipeline mode (PostgreSQL's manual, 34.5): both are sent, then both are answered.
-core::Result<void> PostgresLink::begin_and_run(std::string_view sql, std::span<const Value> values,
-                                               const Seen& seen) {
+/// `first` becomes the value that the first one answers with, if it answers with a row.
+core::Result<void> PostgresLink::run_after(const std::string& first_sql, Value& first,
+                                           std::string_view sql, std::span<const Value> values,
+                                           const Seen& seen) {
   settle();
   auto name = TRY(prepared(sql, values));
   pg_conn* line = connection_.get();
   if (PQenterPipelineMode(line) != 1 ||
-      PQsendQueryParams(line, beginning_.c_str(), 0, nullptr, nullptr, nullptr, nullptr, kBinary) !=
+      PQsendQueryParams(line, first_sql.c_str(), 0, nullptr, nullptr, nullptr, nullptr, kBinary) !=
           1 ||
       !Arguments(values).send(line, name) || PQpipelineSync(line) != 1) {
     const core::Error error{core::Errc::unavailable, failure(nullptr).what};
@@ -315,6 +320,8 @@ core::Result<void> PostgresLink::begin_and_run(std::string_view sql, std::span<c
     if (!result && ++answered == 1) PQsetSingleRowMode(line);  // of the one that comes now
     if (!result) continue;
     if (PQresultStatus(result.get()) == PGRES_PIPELINE_SYNC) break;
+    if (answered == 0 && PQntuples(result.get()) == 1)
+      if (auto value = column(result.get(), 0)) first = std::move(*value);
     if (outcome) outcome = take(result.get(), seen);
   }
   if (outcome && !connected()) return failure(nullptr);
@@ -353,6 +360,20 @@ core::Result<Rows> PostgresLink::query(std::string_view sql, std::span<const Val
     rows.push_back(std::move(row));
     return core::Result<void>();
   }));
+  return rows;
+}
+
+core::Result<Rows> PostgresLink::query_after(const std::string& first_sql, bool& first,
+                                             std::string_view sql, std::span<const Value> values) {
+  Rows rows;
+  Value answered;
+  const auto done = run_after(first_sql, answered, sql, values, [&](Row row) {
+    rows.push_back(std::move(row));
+    return core::Result<void>();
+  });
+  const auto* truth = std::get_if<std::int64_t>(&answered);
+  first = truth && *truth != 0;
+  if (!done) return done.error();
   return rows;
 }
 

@@ -39,6 +39,11 @@ class PostgresLink {
   core::Result<void> each(std::string_view sql, std::span<const Value> values,
                           const std::function<core::Result<void>(Row)>& seen);
   core::Result<Rows> query(std::string_view sql, std::span<const Value> values);
+  /// The rows of a statement that is sent together with another one before it, in one round trip;
+  /// `first` is what that one answers: one row with one truth. `first` is right even if the
+  /// statement itself fails. The statement sees what was committed before the other one ended.
+  core::Result<Rows> query_after(const std::string& first_sql, bool& first, std::string_view sql,
+                                 std::span<const Value> values);
   /// Statements as they are; the answer is the last one's tag, as "COMMIT".
   core::Result<std::string> script(const std::string& sql);
   /// Sends this statement with the next one, in one round trip. That one connects if need be, and
@@ -69,8 +74,8 @@ class PostgresLink {
   using Seen = std::function<core::Result<void>(Row)>;
   struct Arguments;
   core::Result<void> run(std::string_view sql, std::span<const Value> values, const Seen& seen);
-  core::Result<void> begin_and_run(std::string_view sql, std::span<const Value> values,
-                                   const Seen& seen);
+  core::Result<void> run_after(const std::string& first_sql, Value& first, std::string_view sql,
+                               std::span<const Value> values, const Seen& seen);
   core::Result<void> take(const pg_result* result, const Seen& seen);
   core::Result<std::string> execute(const std::string& sql);
   void settle();

@@ -108,6 +108,38 @@ TEST_P(SharedDatabase, EveryJobIsClaimedOnceByWhoeverComesFirst) {
   EXPECT_EQ(std::set<std::string>(claimed.begin(), claimed.end()).size(), std::size_t{kJobs});
 }
 
+TEST_P(SharedDatabase, WhatIsReadUnderANameSeesWhatWhoHeldItBeforeDid) {
+  const auto rename = [](const char* name) {
+    return [name](Writing& tx) {
+      return tx.query("update stations set name = ? where id = 's'", {name});
+    };
+  };
+  ASSERT_TRUE(one_.write([](Writing& tx) { return add_station(tx, {"s", "0"}, "token", 1); }));
+  auto mine = one_.hold("upload 7");
+  ASSERT_TRUE(mine);
+  auto theirs = std::async(std::launch::async, [&] {
+    return other_.hold_and_query(
+        "upload 7", {.sql = "select name from stations where id = ?", .values = {"s"}});
+  });
+  EXPECT_EQ(theirs.wait_for(std::chrono::milliseconds(50)), std::future_status::timeout);
+  ASSERT_TRUE(one_.write(rename("1")));
+  mine->reset();
+  auto found = theirs.get();
+  ASSERT_TRUE(found) << found.error().what;
+  EXPECT_EQ(found->second.front().text(0), "1");
+}
+
+TEST_P(SharedDatabase, ANameIsFreeAgainWhenWhatWasToBeReadFails) {
+  const Statement unknown{.sql = "select none from stations", .values = {}};
+  const Statement by_zero{.sql = "select 1 / (select count(*) from stations where id = 'none')",
+                          .values = {}};
+  EXPECT_FALSE(other_.hold_and_query("upload 7", unknown));
+  EXPECT_TRUE(one_.hold("upload 7"));
+  EXPECT_FALSE(other_.hold_and_query("upload 7", by_zero))
+      << "it fails only once it runs, when the name is held";
+  EXPECT_TRUE(one_.hold("upload 7"));
+}
+
 TEST_P(SharedDatabase, ANameIsHeldByOneUntilItLetsGo) {
   auto mine = one_.hold("upload 7");
   ASSERT_TRUE(mine);

@@ -8,6 +8,7 @@
 #include "core/try.hpp"
 #include "db/store/people/erasure_steps.hpp"
 #include "db/store/rows.hpp"
+#include "db/store/trials/uploads.hpp"
 
 namespace tractus {
 namespace store {
@@ -111,7 +112,7 @@ Result<Erasure> erasure_from(const Row& row) {
 /// Under the lock of its upload: no piece and no commit is on its way then, and none comes after.
 Result<void> delete_file(Store& store, const Objects& objects, const PartialFiles& partials,
                          const std::string& trial_id, const std::string& sha256) {
-  const auto held = TRY(store.hold("upload " + trial_id));
+  const auto held = TRY(store.hold(upload_lock(trial_id)));
   partials.remove(trial_id);
   auto used = TRY(store.read(
       [&](Reading& tx) { return tx.query("select 1 from objects where sha256 = ?", {sha256}); }));

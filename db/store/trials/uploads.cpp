@@ -22,14 +22,31 @@ core::Result<std::optional<Upload>> upload_of(Reading& tx, const std::string& tr
   return one_of(tx.query(std::string(kUpload) + "where trial_id = ?", {trial_id}), upload_from);
 }
 
+namespace {
+
+constexpr const char* kStaying =
+    "select trial_id, station_id, case_id, size_bytes, sha256, state, (select count(*) "
+    "from erased_trials e where e.trial_id = uploads.trial_id) from uploads where trial_id = ?";
+
+/// Whether the rows of kStaying do not say by themselves that the trial stays.
+bool may_be_erased(const Rows& rows) { return rows.empty() || rows.front().count(6) > 0; }
+
+}  // namespace
+
 core::Result<std::optional<Upload>> staying_upload_of(Reading& tx, const std::string& trial_id) {
-  const auto rows = TRY(
-      tx.query("select trial_id, station_id, case_id, size_bytes, sha256, state, (select count(*) "
-               "from erased_trials e where e.trial_id = uploads.trial_id) from uploads "
-               "where trial_id = ?",
-               {trial_id}));
-  if (rows.empty() || rows.front().count(6) > 0) TRY(check_trial_stays(tx, trial_id));
+  const auto rows = TRY(tx.query(kStaying, {trial_id}));
+  if (may_be_erased(rows)) TRY(check_trial_stays(tx, trial_id));
   return one_of(core::Result<Rows>(rows), upload_from);
+}
+
+std::string upload_lock(const std::string& trial_id) { return "upload " + trial_id; }
+
+core::Result<HeldUpload> hold_staying_upload(Store& store, const std::string& trial_id) {
+  auto [lock, rows] =
+      TRY(store.hold_and_query(upload_lock(trial_id), {.sql = kStaying, .values = {trial_id}}));
+  if (may_be_erased(rows))
+    TRY(store.read([&](Reading& tx) { return check_trial_stays(tx, trial_id); }));
+  return HeldUpload{std::move(lock), TRY(one_of(core::Result<Rows>(rows), upload_from))};
 }
 
 core::Result<std::vector<Upload>> open_uploads(Reading& tx) {

@@ -23,6 +23,14 @@ struct Upload {
 core::Result<std::optional<Upload>> upload_of(Reading& tx, const std::string& trial_id);
 /// The same by one statement; for a trial whose person has left the error of check_trial_stays.
 core::Result<std::optional<Upload>> staying_upload_of(Reading& tx, const std::string& trial_id);
+/// The same while its name is held (Store::hold), until the lock goes.
+struct HeldUpload {
+  std::unique_ptr<NamedLock> lock;
+  std::optional<Upload> upload;
+};
+core::Result<HeldUpload> hold_staying_upload(Store& store, const std::string& trial_id);
+/// The name by which an upload is held.
+std::string upload_lock(const std::string& trial_id);
 /// All that are still receiving.
 core::Result<std::vector<Upload>> open_uploads(Reading& tx);
 /// Those of them that were announced after `utc_us`.

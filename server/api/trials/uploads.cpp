@@ -84,6 +84,23 @@ core::Result<store::Upload> own_upload(Backend& backend, const Caller& station,
   return std::move(*upload);
 }
 
+/// An upload of this station while nobody else works on it. Another station's upload is not waited
+/// for.
+struct OwnUpload {
+  std::unique_ptr<store::NamedLock> lock;
+  store::Upload upload;
+};
+core::Result<OwnUpload> hold_own_upload(Backend& backend, const Caller& station,
+                                        const std::string& trial_id) {
+  if (!backend.upload_owners.knows(trial_id, station.id)) {
+    TRY(own_upload(backend, station, trial_id));
+    backend.upload_owners.note(trial_id, station.id);
+  }
+  auto held = TRY(store::hold_staying_upload(backend.store, trial_id));
+  if (!held.upload || held.upload->station_id != station.id) return unknown(trial_id);
+  return OwnUpload{std::move(held.lock), std::move(*held.upload)};
+}
+
 /// The case that an announcement means: one by its id, or that of a study's slot, which is all that
 /// a station knows of it. A slot that was never handed to the station is as if it were not there.
 core::Result<std::string> case_meant(store::Reading& tx, const Caller& station,
@@ -144,7 +161,7 @@ core::Result<std::optional<store::Upload>> announced_before(
 
 core::Result<std::unique_ptr<store::NamedLock>> hold_upload(Backend& backend,
                                                             const std::string& trial_id) {
-  return backend.store.hold("upload " + trial_id);
+  return backend.store.hold(store::upload_lock(trial_id));
 }
 
 core::Result<wire::UploadState> announce_upload(Backend& backend, const Caller& station,
@@ -171,18 +188,15 @@ core::Result<wire::UploadState> announce_upload(Backend& backend, const Caller& 
 
 core::Result<wire::UploadState> upload_state(Backend& backend, const Caller& station,
                                              const std::string& trial_id) {
-  TRY(own_upload(backend, station, trial_id));  // before the lock: others' ids wait for nothing
-  const auto held = TRY(hold_upload(backend, trial_id));  // no piece is half on its way
-  auto upload = TRY(own_upload(backend, station, trial_id));
-  return state_of(backend, upload);
+  const auto held = TRY(hold_own_upload(backend, station, trial_id));  // no piece is half written
+  return state_of(backend, held.upload);
 }
 
 core::Result<Appended> append_upload(Backend& backend, const Caller& station,
                                      const std::string& trial_id, std::uint64_t offset_bytes,
                                      std::uint32_t crc32c, core::ByteView bytes) {
-  TRY(own_upload(backend, station, trial_id));  // before the lock: others' ids wait for nothing
-  const auto held = TRY(hold_upload(backend, trial_id));
-  auto upload = TRY(own_upload(backend, station, trial_id));
+  const auto held = TRY(hold_own_upload(backend, station, trial_id));
+  const store::Upload& upload = held.upload;
   if (upload.state != store::UploadPhase::receiving)
     return core::Error{core::Errc::conflict, fmt::format("trial {} is complete", trial_id)};
   const std::uint64_t there = backend.partials.size_of(trial_id);
@@ -203,9 +217,8 @@ core::Result<Appended> append_upload(Backend& backend, const Caller& station,
 core::Result<wire::UploadState> commit_upload(Backend& backend, const Caller& station,
                                               const std::string& trial_id,
                                               const std::string& traceparent) {
-  TRY(own_upload(backend, station, trial_id));  // before the lock: others' ids wait for nothing
-  const auto held = TRY(hold_upload(backend, trial_id));
-  auto upload = TRY(own_upload(backend, station, trial_id));
+  const auto held = TRY(hold_own_upload(backend, station, trial_id));
+  const store::Upload& upload = held.upload;
   if (upload.state == store::UploadPhase::complete) return state_of(backend, upload);
   if (const std::uint64_t there = backend.partials.size_of(trial_id); there < upload.size_bytes)
     return core::Error{core::Errc::conflict,
