@@ -3,6 +3,7 @@
 #include <cstdlib>
 
 #include "core/bytes.hpp"
+#include "tests/support/database/emptied.hpp"
 #include "tests/support/postgres/postgres_server.hpp"
 
 namespace tractus {
@@ -35,15 +36,10 @@ const fs::path& file_with_schema() {
   return made.file;
 }
 
-/// PostgreSQL's database that others are copied from, its schema up to date.
-const std::string& with_schema() {
-  static const std::string name = [] {
-    std::string made = postgres_server().add_database();
-    auto opened = store::Store::open_postgres(postgres_server().address(made));
-    core::require(bool(opened), opened ? "" : opened.error().what.c_str());
-    return made;
-  }();
-  return name;
+/// PostgreSQL's, their schema up to date. Used by one thread.
+EmptiedDatabases& with_schema() {
+  static EmptiedDatabases databases;
+  return databases;
 }
 
 }  // namespace
@@ -54,18 +50,31 @@ DatabaseKind database_kind() {
                                                           : DatabaseKind::sqlite;
 }
 
-TestDatabase::TestDatabase(DatabaseKind kind, Content content) : kind_(kind) {
+TestDatabase::TestDatabase(DatabaseKind kind, Content content) : kind_(kind), content_(content) {
   if (kind == DatabaseKind::sqlite) {
     folder_ = new_folder();
     if (content == Content::schema) fs::copy_file(file_with_schema(), folder_ / "tractus.db");
     return;
   }
-  name_ = postgres_server().add_database(content == Content::schema ? with_schema() : "template0");
+  name_ = content == Content::schema ? with_schema().take() : postgres_server().add_database();
   address_ = postgres_server().address(name_);
 }
 
+TestDatabase::TestDatabase(const std::string& model)
+    : kind_(DatabaseKind::postgresql),
+      content_(Content::nothing),
+      name_(postgres_server().add_database(model)),
+      address_(postgres_server().address(name_)) {}
+
+std::unique_ptr<TestDatabase> TestDatabase::copy_of(const TestDatabase& model) {
+  return std::unique_ptr<TestDatabase>(new TestDatabase(model.name_));
+}
+
 TestDatabase::~TestDatabase() {
-  if (kind_ == DatabaseKind::postgresql) postgres_server().drop_database(name_);
+  if (kind_ == DatabaseKind::postgresql && content_ == Content::schema)
+    with_schema().give_back(name_);
+  else if (kind_ == DatabaseKind::postgresql)
+    postgres_server().drop_database(name_);
   std::error_code ignored;
   std::filesystem::remove_all(folder_, ignored);
 }

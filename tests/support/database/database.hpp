@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 
@@ -24,6 +25,8 @@ enum class Content { schema, nothing };
 class TestDatabase {
  public:
   explicit TestDatabase(DatabaseKind kind = database_kind(), Content content = Content::schema);
+  /// A copy of one on PostgreSQL, to which nobody is connected.
+  static std::unique_ptr<TestDatabase> copy_of(const TestDatabase& model);
   ~TestDatabase();
   TestDatabase(const TestDatabase&) = delete;
   TestDatabase& operator=(const TestDatabase&) = delete;
@@ -37,7 +40,9 @@ class TestDatabase {
   DatabaseKind kind() const { return kind_; }
 
  private:
+  explicit TestDatabase(const std::string& model);
   DatabaseKind kind_;
+  Content content_;
   std::filesystem::path folder_;
   std::string name_, address_;
 };

@@ -161,10 +161,9 @@ std::string PostgresServer::address(const std::string& database) const {
 }
 
 void PostgresServer::run(const std::string& sql) {
-  auto connection = store::postgres_connection(address(), store::Access::write);
-  if (!connection->begin(store::Access::beside) || !connection->commit())
-    give_up("it cannot be reached");
-  if (auto done = connection->script(sql); !done) give_up(sql + ": " + done.error().what);
+  if (!line_) line_ = store::postgres_connection(address(), store::Access::write);
+  if (!line_->begin(store::Access::beside) || !line_->commit()) give_up("it cannot be reached");
+  if (auto done = line_->script(sql); !done) give_up(sql + ": " + done.error().what);
 }
 
 std::string PostgresServer::add_database(const std::string& of) {

@@ -4,8 +4,11 @@
 #include <sys/types.h>
 
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <vector>
+
+#include "db/store/database/connection.hpp"
 
 namespace tractus::test_support {
 
@@ -45,6 +48,7 @@ class PostgresServer {
   gid_t group_ = 0;
   pid_t pid_ = -1;
   int made_ = 0;
+  std::unique_ptr<store::Connection> line_;  ///< kept: a session is dear to begin
 };
 
 /// The one of this test program, made when first asked for; not durable.

@@ -16,6 +16,7 @@
 #include <fstream>
 
 #include "core/bytes.hpp"
+#include "tests/support/server/furnished.hpp"
 #include "tests/support/server/world.hpp"
 
 extern char** environ;
@@ -205,15 +206,22 @@ RawAnswer send_raw(int port, const std::string& bytes, int patience_ms) {
 }
 
 ServedWorld::ServedWorld() {
-  if (test_support::database_kind() == test_support::DatabaseKind::postgresql) {
-    database_ = std::make_unique<test_support::TestDatabase>(test_support::DatabaseKind::postgresql,
-                                                             test_support::Content::nothing);
+  const FurnishedWorld& model = furnished_world();
+  if (model.database) {
+    database_ = test_support::TestDatabase::copy_of(*model.database);
     address_ = database_->address();
   }
-  furnish();
+  begin();
+  fs::copy(model.folder, folder, fs::copy_options::recursive);
+  if (model.database) std::ofstream(data / "database.address") << address_ << "\n";
+  read();
 }
 
-ServedWorld::ServedWorld(const std::string& address) : address_(address) { furnish(); }
+ServedWorld::ServedWorld(const std::string& address) : address_(address) {
+  begin();
+  furnish_world(folder, address);
+  read();
+}
 
 std::unique_ptr<store::Connection> ServedWorld::connection() const {
   if (address_.empty()) {
@@ -224,22 +232,14 @@ std::unique_ptr<store::Connection> ServedWorld::connection() const {
   return made->begin(store::Access::beside) && made->commit() ? std::move(made) : nullptr;
 }
 
-void ServedWorld::furnish() {
+void ServedWorld::begin() {
   folder = fs::path(::testing::TempDir()) / ("tractus-" + core::new_id());
   data = folder / "data";
   fs::create_directories(folder);
-  std::ofstream(folder / "password") << kPassword << "\n";
-  const auto must = [](const std::vector<std::string>& arguments) {
-    const Ended ended = run_program("tractus-server", arguments);
-    EXPECT_EQ(ended.code, 0) << ended.out;
-  };
-  std::vector<std::string> init{"init", "--data", data, "--password-file", folder / "password"};
-  if (!address_.empty()) init.insert(init.end(), {"--database", address_});
-  must(init);
-  for (const char* name : {"station-1", "station-2"})
-    must({"enrol", "--data", data, "--name", name, "--out", folder / name});
-  case_id = make_case(folder / "case");
-  must({"publish", "--data", data, folder / "case"});
+}
+
+void ServedWorld::read() {
+  case_id = token_in(folder / "case-id");
   station_1 = {{"Authorization", "Bearer " + token_in(folder / "station-1")}};
   station_2 = {{"Authorization", "Bearer " + token_in(folder / "station-2")}};
 }

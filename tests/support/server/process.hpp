@@ -109,7 +109,8 @@ struct ServedWorld {
   Headers station_1, station_2;  ///< their credentials
 
  private:
-  void furnish();
+  void begin();
+  void read();
   std::unique_ptr<test_support::TestDatabase> database_;
   std::string address_;  ///< empty: SQLite
 
