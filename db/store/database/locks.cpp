@@ -33,7 +33,8 @@ class LocalLocks final : public Locks {
     return std::unique_ptr<NamedLock>(std::make_unique<Held>(stripes_.hold(name)));
   }
   core::Result<HeldRows> hold_and_query(const std::string& name, const Statement&) override {
-    return HeldRows{TRY(hold(name)), std::nullopt};
+    auto lock = TRY(hold(name));
+    return HeldRows{std::move(lock), std::nullopt};
   }
 
  private:

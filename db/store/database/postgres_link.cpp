@@ -315,6 +315,7 @@ core::Result<void> PostgresLink::run_after(const std::string& first_sql, Value& 
     return error;
   }
   core::Result<void> outcome;
+  const Seen nobody = [](const Row&) { return core::Result<void>(); };
   for (int answered = 0; connected();) {
     const Result result(PQgetResult(line));
     if (!result && ++answered == 1) PQsetSingleRowMode(line);  // of the one that comes now
@@ -322,7 +323,8 @@ core::Result<void> PostgresLink::run_after(const std::string& first_sql, Value& 
     if (PQresultStatus(result.get()) == PGRES_PIPELINE_SYNC) break;
     if (answered == 0 && PQntuples(result.get()) == 1)
       if (auto value = column(result.get(), 0)) first = std::move(*value);
-    if (outcome) outcome = take(result.get(), seen);
+    // The mode of the statement before the pipeline may still hold for the first.
+    if (outcome) outcome = take(result.get(), answered == 0 ? nobody : seen);
   }
   if (outcome && !connected()) return failure(nullptr);
   if (connected()) PQexitPipelineMode(line);
