@@ -79,17 +79,42 @@ class World:
         wrench, _, change = predict(self.bone, self.probe, self.motion, self.t_s, hidden)
         return wrench, self.probe.force_scale * change
 
-    def left_share(self, difference):
-        """Share of a force difference that no change of the base's free numbers takes up, linearly."""
+    def base_columns(self):
+        """What small changes of the base's free numbers do to the force."""
         if self._columns is None:
             self._columns = [self.base[..., :3].ravel()]  # the force scale
             for name in ["force_factor_Nm"] + ["youngs_modulus_Pa"] * (not self.probe.youngs_modulus_known):
                 changed = type(self.probe)(**{**vars(self.probe), name: 1.01 * getattr(self.probe, name)})
                 moved = predict(self.bone, changed, self.motion, self.t_s, start=self.bend)[0]
                 self._columns.append((moved - self.base)[..., :3].ravel())
-        columns, y = np.stack(self._columns, 1), difference.ravel()
+        return self._columns
+
+    def left_share(self, difference, partner="", partners_difference=None):
+        """Share of a force difference that no change of the base's free numbers takes up, linearly, nor one of a partner:
+        another hidden effect, of which a refit finds the size by its own difference, or, of a drift, the course."""
+        columns, y = np.stack(self.base_columns(), 1), difference.ravel()
+        if partner == "sensor_drift":
+            columns = np.stack([self.without_drift(c) for c in columns.T], 1)
+            y = self.without_drift(y)
+        elif partner:
+            columns = np.column_stack([columns, partners_difference.ravel()])
         left = y - columns @ np.linalg.lstsq(columns, y, rcond=None)[0]
-        return float(np.linalg.norm(left) / max(np.linalg.norm(y), 1e-12))
+        return float(np.linalg.norm(left) / max(np.linalg.norm(difference), 1e-12))
+
+    def without_drift(self, values):
+        """What no course of sensor_drift takes up: in each trial and axis, a constant and three waves are free."""
+        left = np.array(values).reshape(len(self.t_s), self.t_s.shape[1], 3)
+        for trial, t_s in zip(left, self.t_s):
+            share = (t_s - t_s[0]) / (t_s[-1] - t_s[0])
+            courses = np.cos(np.pi * share[:, None] * np.arange(4))
+            trial -= courses @ np.linalg.lstsq(courses, trial, rcond=None)[0]
+        return left.ravel()
+
+    def refit_beside(self, sized):
+        """Adds to the figures of two effects what a refit of the base and of the other one leaves of each."""
+        alone = [(self.wrench([(effect, q)])[0] - self.base)[..., :3] for effect, q, _ in sized]
+        for i, (_, _, figures) in enumerate(sized):
+            figures["left_after_base_and_partner_refit"] = self.left_share(alone[i], sized[1 - i][0].id, alone[1 - i])
 
     def size_effect(self, effect, rng, shares):
         """The effect's numbers at which it makes the drawn share of the force, and what they come to."""
@@ -253,6 +278,8 @@ def make(seed, hidden, shares=SHARES):
     world, sized, accepted, draws = draw_hidden(seed, hidden, bone, shares)
     probe, pairs = world.probe, [(effect, q) for effect, q, _ in sized]
     wrench, unsettled_N = world.wrench(pairs) if pairs else (world.base, 0.0)
+    if len(sized) == 2:
+        world.refit_beside(sized)
     rng = np.random.default_rng([seed, 5])
     p, q, said, sensor = record(world, wrench, rng)
     nifti = rng.random() < 0.5

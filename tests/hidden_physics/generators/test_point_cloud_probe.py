@@ -154,6 +154,30 @@ class EffectTest(unittest.TestCase):
                                    atol=1e-9)
 
 
+class RefitTest(unittest.TestCase):
+    def setUp(self):
+        self.world = generator.World.__new__(generator.World)
+        self.world.t_s = np.stack([np.linspace(0, 8, 801), np.linspace(0, 7, 801)])
+        self.world.base = np.zeros((2, 801, 6))
+        self.world._columns = [np.tile(np.sin(40 * self.world.t_s)[..., None], 3).ravel()]
+        self.rng = np.random.default_rng(3)
+
+    def test_what_the_base_takes_up_is_not_left(self):
+        fast = np.tile(np.cos(40 * self.world.t_s)[..., None], 3)
+        mixed = 3 * self.world._columns[0].reshape(2, 801, 3) + 4 * fast  # 3, 4, 5: four fifths are left
+        self.assertAlmostEqual(self.world.left_share(mixed), 0.8, delta=0.002)
+        self.assertAlmostEqual(self.world.left_share(mixed, "tip_ball", fast), 0, delta=1e-9)
+
+    def test_a_drift_takes_up_any_of_its_courses_in_each_trial_and_axis(self):
+        share = self.world.t_s / self.world.t_s[:, -1:]
+        waves = np.cos(np.pi * share[..., None] * [0, 1, 2, 3])
+        course = np.einsum("jmk,jka->jma", waves, self.rng.normal(size=(2, 4, 3)))
+        self.assertGreater(self.world.left_share(course), 0.99)
+        self.assertAlmostEqual(self.world.left_share(course, "sensor_drift", course), 0, delta=1e-9)
+        fast = np.tile(np.cos(60 * self.world.t_s)[..., None], 3)
+        self.assertGreater(self.world.left_share(fast, "sensor_drift", course), 0.98)
+
+
 class SetTest(unittest.TestCase):
     def assert_alike(self, one, other):
         """Equal but for the last digits of numbers: sums over a matrix library's threads differ there."""
