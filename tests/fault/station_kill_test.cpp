@@ -104,6 +104,7 @@ class KilledStation {
   /// Every sample that was promised is in a whole file; every whole file is on the server, once.
   void check(Client& client) {
     std::map<std::string, std::uint64_t> here;
+    interrupted_ = 0;
     for (const auto& entry : fs::directory_iterator(data() / "trials")) {
       EXPECT_NE(entry.path().extension(), ".part");
       if (entry.path().extension() != ".ttrial") continue;
@@ -143,6 +144,8 @@ class KilledStation {
   int killed_ = 0, interrupted_ = 0;
 };
 
+constexpr int kFewestInterrupted = 10;
+
 TEST(KilledAtAnyMoment, TheStationLosesNothingItPromisedAndEveryTrialArrivesOnce) {
   KilledStation station;
   ServerProcess server(station.world().data);
@@ -162,24 +165,27 @@ TEST(KilledAtAnyMoment, TheStationLosesNothingItPromisedAndEveryTrialArrivesOnce
   }
 
   // A run that ends before its kill shows that runs have become shorter: the next ones are killed
-  // sooner.
+  // sooner. On a busy machine most of a run is starting and handing over: more are killed then, for
+  // enough to meet a running trial.
   std::mt19937 random(20260302);
-  int runs = 0;
-  for (; station.killed() < kKills && runs < 3 * kKills && !HasFailure(); ++runs) {
-    const std::chrono::microseconds after(std::uniform_int_distribution<long>(0, length)(random));
-    if (!station.run_and_kill(server.port(), 2 + runs, after)) length = after.count();
-  }
-  const auto last = station.ask("upload", server.port());
-  EXPECT_EQ(last.code, 0) << last.out;
-  EXPECT_EQ(station.ask("upload", server.port()).code, 0);  // again changes nothing
-
   Client client;
   client.speak_to(server.port());
-  station.check(client);
+  int runs = 0;
+  for (int round = 1; round <= 3 && station.interrupted() <= kFewestInterrupted; ++round) {
+    for (; station.killed() < round * kKills && runs < 3 * round * kKills && !HasFailure();
+         ++runs) {
+      const std::chrono::microseconds after(std::uniform_int_distribution<long>(0, length)(random));
+      if (!station.run_and_kill(server.port(), 2 + runs, after)) length = after.count();
+    }
+    const auto last = station.ask("upload", server.port());
+    EXPECT_EQ(last.code, 0) << last.out;
+    EXPECT_EQ(station.ask("upload", server.port()).code, 0);  // again changes nothing
+    station.check(client);
+  }
   std::printf("%d runs, %d killed, %d trials interrupted, %zu with promised samples\n", runs,
               station.killed(), station.interrupted(), station.promised());
-  EXPECT_EQ(station.killed(), kKills);
-  EXPECT_GT(station.interrupted(), 10) << "too few kills met a running trial";
+  EXPECT_GE(station.killed(), kKills);
+  EXPECT_GT(station.interrupted(), kFewestInterrupted) << "too few kills met a running trial";
 }
 
 }  // namespace
