@@ -10,8 +10,8 @@
 namespace tractus::test_support {
 
 /// Databases whose schema is up to date. What a test has left in one is taken away for the next,
-/// which costs a fifth of a new database and of the caches that its first sessions fill. One whose
-/// schema a test has changed is not used again.
+/// which costs less than a new one and the caches that its first sessions fill. One whose schema a
+/// test has changed is not used again.
 class EmptiedDatabases {
  public:
   std::string take();
