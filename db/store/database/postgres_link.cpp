@@ -315,7 +315,7 @@ core::Result<void> PostgresLink::run_after(const std::string& first_sql, Value& 
     return error;
   }
   core::Result<void> outcome;
-  const Seen nobody = [](const Row&) { return core::Result<void>(); };
+  const Seen ignored = [](const Row&) { return core::Result<void>(); };
   for (int answered = 0; connected();) {
     const Result result(PQgetResult(line));
     if (!result && ++answered == 1) PQsetSingleRowMode(line);  // of the one that comes now
@@ -324,7 +324,7 @@ core::Result<void> PostgresLink::run_after(const std::string& first_sql, Value& 
     if (answered == 0 && PQntuples(result.get()) == 1)
       if (auto value = column(result.get(), 0)) first = std::move(*value);
     // The mode of the statement before the pipeline may still hold for the first.
-    if (outcome) outcome = take(result.get(), answered == 0 ? nobody : seen);
+    if (outcome) outcome = take(result.get(), answered == 0 ? ignored : seen);
   }
   if (outcome && !connected()) return failure(nullptr);
   if (connected()) PQexitPipelineMode(line);

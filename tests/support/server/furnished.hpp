@@ -20,7 +20,7 @@ struct FurnishedWorld {
 };
 
 /// On the database that the environment asks for. On SQLite it stays in the build folder for other
-/// test programs, until tractus-server is built anew; on PostgreSQL it ends with this program.
+/// test programs, until what makes it is built anew; on PostgreSQL it ends with this program.
 const FurnishedWorld& furnished_world();
 
 }  // namespace tractus::world
